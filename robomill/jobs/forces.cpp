@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/program_forces.hpp"
@@ -225,6 +226,7 @@ ForcesResult run_forces_with(ForcesFile forces, const std::filesystem::path& pro
   if (!result.cell && !result.file.cell.empty()) result.cell = read_cell(result.file.cell);
   result.notes = result.file.notes;
   if (result.cell) result.notes.insert(result.notes.end(), result.cell->notes.begin(), result.cell->notes.end());
+  result.warnings = io::take_warnings(result.notes);
   if (!program.empty()) {
     result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress, run);
   } else {

@@ -9,6 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
@@ -26,6 +27,11 @@ namespace {
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
+}
+
+/// What warns among a file's notes, which are not the plan's otherwise.
+void append_warnings(std::vector<std::string> notes, std::vector<std::string>& warnings) {
+  append(warnings, io::take_warnings(notes));
 }
 
 /// Where prediction and measurement are further apart than this, the lobes are those of another tip.
@@ -54,6 +60,7 @@ void warn_of_prediction(PlanResult& result) {
   result.notes.push_back(
       prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
                           : "The FRFs are predicted from the assembly, not measured.");
+  append_warnings(prediction.file.notes, result.warnings);
   append(result.notes, prediction.file.joint_notes);
   append(result.warnings, prediction.file.joint_warnings);
   warn_of_distance(prediction, result.warnings);
@@ -76,6 +83,7 @@ void measure(PlanResult& result, Progress& progress) {
     const modal::HitsFile hits = modal::read_hits(result.job.hits);
     append(result.notes, hits.notes);
     add_assumed(result.assumed, hits.assumed);
+    append_warnings(hits.notes, result.warnings);
     for (const modal::Hit& hit : hits.hits) {
       result.hit_directions.push_back(
           fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));
@@ -273,6 +281,7 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, con
 void read_cut(PlanResult& result) {
   result.cut = read_lobes(result.job.lobes);
   append(result.notes, result.cut.notes);
+  append(result.warnings, io::take_warnings(result.notes));
   require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
@@ -294,9 +303,12 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
                    const std::filesystem::path& folder, bool accept_fit) {
   PlanResult result;
   result.job = read_job(job);
+  append_warnings(result.job.notes, result.warnings);
   // Everything that is quick to reject is read before the long work starts.
   if (result.recommends()) read_cut(result);
   const std::optional<CellFile> cell = cell_of(result.job);
+  if (cell && result.job.forces.empty())
+    append_warnings(cell->notes, result.warnings);  // else they come with the forces
   const bool with_path = wants_path(result.job, cell);
   if (result.job.has_structure()) {
     measure(result, progress);

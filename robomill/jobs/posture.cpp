@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/tip.hpp"
+#include "robomill/robot/usual_arm.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -277,6 +281,23 @@ std::size_t CellDynamics::unmatched(const modal::PosturePrediction& prediction) 
   return nearest->second - std::min(nearest->second, prediction.modes.modes.size());
 }
 
+namespace {
+
+/// Arms of 1.5 m reach and more have their first mode at 5 to 25 Hz.
+void warn_of_lowest(const CellFile& cell, ModesOfPosture& out) {
+  if (out.report.source != modal::PostureReport::Source::cell || out.prediction.modes.modes.empty()) return;
+  if (robot::stretched_reach_m(cell.cell.arm) < 1.5) return;
+  double lowest_hz = std::numeric_limits<double>::infinity();
+  for (const modal::Mode& mode : out.prediction.modes.modes) lowest_hz = std::min(lowest_hz, mode.frequency_hz);
+  if (lowest_hz >= 2.5 && lowest_hz <= 28.0) return;
+  out.warnings.push_back(fmt::format(
+      "{}: the arm's first natural frequency would be {:.3g} Hz; 5 to 25 Hz is usual of an arm of this reach. Check "
+      "robot.joint_stiffness_n_m_per_rad and the masses of the links",
+      cell.path.string(), lowest_hz));
+}
+
+}  // namespace
+
 ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_given,
                              PostureAxes axes, Progress& progress) {
   const CellFile cell = read_cell(path);
@@ -295,6 +316,9 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   out.direct_deviation = dynamics.model->direct_deviation(joints);
   out.warnings = std::move(dynamics.warnings);
   out.notes = std::move(dynamics.notes);
+  std::vector<std::string> of_cell = cell.notes;
+  std::ranges::move(io::take_warnings(of_cell), std::back_inserter(out.warnings));
+  warn_of_lowest(cell, out);
   out.assumed = std::move(dynamics.assumed);
   const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));

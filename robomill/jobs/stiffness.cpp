@@ -3,11 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+#include <string>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/robot/pose.hpp"
+#include "robomill/robot/usual_arm.hpp"
 
 namespace robomill::jobs {
+
+namespace {
+
+/// What is unusual about the loads, and about the stiffness that they give.
+void warn_of_loads(StiffnessResult& result) {
+  const auto warn = [&](const std::string& text) {
+    result.cell.notes.push_back(fmt::format("{}{}: {}.", io::warning_label, result.loads.path.string(), text));
+  };
+  for (const std::string& text : robot::unusual_displacements(result.loads.loads)) warn(text);
+  for (std::size_t k = 0; k < result.found.joints.size(); ++k) {
+    const robot::IdentifiedJoint& joint = result.found.joints[k];
+    if (!joint.identifiable || result.cell.cell.arm.joints[k].prismatic) continue;
+    const auto unusual = io::unusual_value("joint_stiffness_n_m_per_rad", std::span(&joint.stiffness, 1));
+    if (unusual)
+      warn(fmt::format("joint {} comes out as {:.4g} N m/rad, which {}", k + 1, joint.stiffness, unusual->rule));
+  }
+}
+
+}  // namespace
 
 StiffnessResult run_stiffness(const StiffnessJob& job) {
   StiffnessResult out;
@@ -18,6 +41,7 @@ StiffnessResult run_stiffness(const StiffnessJob& job) {
   const Eigen::Isometry3d mount = out.cell.mount();
   const Eigen::Vector3d point_m = job.point_m.value_or(mount * robot::tip_point(cell));
   out.found = robot::identify_joint_stiffness(cell.arm, mount.inverse() * point_m, out.loads);
+  warn_of_loads(out);
   if (!job.point_m) {
     const Eigen::Vector3d mm = point_m / units::mm;
     out.assumed.push_back({.what = "Point that the loads attack and that moved",

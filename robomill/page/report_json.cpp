@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/page/json.hpp"
 #include "robomill/page/path_columns.hpp"
 #include "robomill/page/thin.hpp"
@@ -300,8 +301,10 @@ Json page_data(const Report& report) {
       if (part.is_string()) part = text(part.get<std::string>());
     }
   }
-  json["warnings"] = texts(report.warnings);
-  json["notes"] = texts(report.notes);
+  std::vector<std::string> notes = report.notes, warnings = report.warnings;
+  std::ranges::move(io::take_warnings(notes), std::back_inserter(warnings));
+  json["warnings"] = texts(warnings);
+  json["notes"] = texts(notes);
   json["files"] = Json::array();
   for (const StageFile& file : report.files) {
     json["files"].push_back(

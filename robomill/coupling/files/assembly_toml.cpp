@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -329,6 +330,7 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   add_defaults(file, reading, out);
   file.done();
   add_assumed(out.assumed, io::sample_values(source));
+  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   if (!reading.joint_sought) choose_lines(file, lines, out);
   about(file, out.receptances.empty() ? source.path : out.receptances, [&] { out.assembly.validate(); });
   return out;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -14,12 +15,14 @@
 #include "robomill/io/samples.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/arm_toml.hpp"
 #include "robomill/program/files/gcode.hpp"
 #include "robomill/robot/files/geometry_toml.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
 #include "robomill/robot/files/pose_toml.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
+#include "robomill/robot/usual_arm.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -225,6 +228,9 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   }
   file.done();
   add_assumed(out.assumed, io::sample_values(source));
+  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
+  for (const std::string& text : robot::unusual_masses(out.cell.arm))
+    out.notes.push_back(fmt::format("{}{}: {}.", io::warning_label, out.path.string(), text));
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
     out.hybrid->tool_length_m = out.cell.tool_length_m;

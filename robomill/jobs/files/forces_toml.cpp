@@ -213,6 +213,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   }
   structure("workpiece_dynamics", out.workpiece_dynamics);
   file.done();
+  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   return out;
 }
 

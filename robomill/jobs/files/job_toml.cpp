@@ -167,6 +167,7 @@ Job read_job(const io::TomlSource& source) {
     cuts.done();
   }
   file.done();
+  job.notes = file.unusual();
   file.locate([&] { job.validate(); });
   return job;
 }

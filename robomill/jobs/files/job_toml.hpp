@@ -44,7 +44,8 @@ struct TestCut {
 /// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
 /// is given; a job that judges blocks may have none of them, nor lobes.
 struct Job {
-  std::filesystem::path file = {};  ///< this one
+  std::filesystem::path file = {};      ///< this one
+  std::vector<std::string> notes = {};  ///< sentences for the user
   std::string title = {};
   std::filesystem::path hits = {}, modes = {}, lobes = {};
   std::filesystem::path assembly = {};  ///< whose tip is predicted …

@@ -378,6 +378,7 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
     out.surface_grid = {grid[0], grid[1]};
   }
   file.done();
+  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   return out;
 }
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -255,6 +257,7 @@ HitsFile read_hits(const io::TomlSource& source) {
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
   file.done();
+  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   out.assumed = assumed_of(file, out.options.response, source.path);
   add_assumed(out.assumed, io::sample_values(source));
   return out;
