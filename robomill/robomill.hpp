@@ -148,6 +148,7 @@
 #include "robomill/robot/redundancy.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
+#include "robomill/robot/usual_arm.hpp"
 #include "robomill/serve/serve.hpp"
 #include "robomill/signal/bands.hpp"
 #include "robomill/signal/fft.hpp"

@@ -72,8 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SteelInMpa", "holder.segments[0].youngs_modulus_gpa", {205'000}, "MPa"},
         Mistake{"DensityInGPerCm3", "tool[0].density_kg_per_m3", {14.4}, "g/cm^3"},
         Mistake{"PowerInW", "spindle.curve[0].power_kw", {7500}, "in W?"},
-        Mistake{"LoadInG", "tool.mass_kg", {18'500}, "in g?"},
-        Mistake{"RunoutInMm", "tool.runout_um", {0.008}, "mm"},
+        Mistake{"LoadInG", "tool.mass_kg", {18'500}, "in g?"}, Mistake{"RunoutInMm", "tool.runout_um", {0.008}, "mm"},
         Mistake{"ToleranceInM", "smoothing.tip_tolerance_mm", {2e-5}, "in m?"},
         Mistake{"PeriodInS", "smoothing.sample_period_ms", {0.001}, "in s?"},
         Mistake{"InertiaInKgMm2", "robot.links[0].inertia_kg_m2", {7.2e6, 6.8e6, 2e6, 0, 0, 0}, "kg mm^2"}),
@@ -172,8 +171,9 @@ TEST(UsualRanges, FindNothingInExamplesDataAndTemplates) {
 
 TEST(UsualRanges, AreSaidWithFileLineKeyAndValue) {
   test::Folder folder;
-  const auto path = folder.file("cut.toml", "[tool]\nteeth = 2\n[cut]\nfeed_per_tooth_mm = 6\n[[cuts]]\naxial_depth_mm = 1\n"
-                                            "[[cuts]]\naxial_depth_mm = 0.0004\n");
+  const auto path = folder.file("cut.toml",
+                                "[tool]\nteeth = 2\n[cut]\nfeed_per_tooth_mm = 6\n[[cuts]]\naxial_depth_mm = 1\n"
+                                "[[cuts]]\naxial_depth_mm = 0.0004\n");
   const std::vector<std::string> found = TomlFile(path).unusual();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0], "Warning: " + path.string() +

@@ -77,13 +77,13 @@ std::vector<std::string> unusual_masses(const Arm& arm) {
   const double cube = std::pow(reach_m, 3);
   const double density = sum_kg / cube;
   if (density < usual.lowest || density > usual.highest) {
-    out.push_back(
-        fmt::format("the links of the arm weigh {:.6g} kg together; {:.2g} to {:.2g} kg is usual with a reach of {:.3g} "
-                    "m. Natural frequencies and torques that follow from them are wrong{}",
-                    sum_kg, usual.lowest * cube, usual.highest * cube, reach_m,
-                    density > 1e3 * usual.lowest   ? ". Are they in g?"
-                    : density < 1e-3 * usual.highest ? ". Are they in t?"
-                                                     : ""));
+    out.push_back(fmt::format(
+        "the links of the arm weigh {:.6g} kg together; {:.0f} to {:.0f} kg is usual with a reach of {:.3g} "
+        "m. Natural frequencies and torques that follow from them are wrong{}",
+        sum_kg, usual.lowest * cube, usual.highest * cube, reach_m,
+        density > 1e3 * usual.lowest     ? ". Are they in g?"
+        : density < 1e-3 * usual.highest ? ". Are they in t?"
+                                         : ""));
   }
   compare_inertias(arm, reach_m, out);
   return out;
@@ -106,10 +106,10 @@ std::vector<std::string> unusual_displacements(const std::vector<Load>& loads) {
   }
   if (forces == 0) return out;
   if (2 * against > forces && work < -0.05 * size) {
-    out.push_back(
-        fmt::format("in {} of {} loads the point moved against the force, which no spring does. Are forces of the robot "
-                    "on its surroundings given, or is an axis turned round? Forces count as they act on the robot",
-                    against, forces));
+    out.push_back(fmt::format(
+        "in {} of {} loads the point moved against the force, which no spring does. Are forces of the robot "
+        "on its surroundings given, or is an axis turned round? Forces count as they act on the robot",
+        against, forces));
   }
   std::ranges::nth_element(stiffness_n_per_m,
                            stiffness_n_per_m.begin() + static_cast<std::ptrdiff_t>(stiffness_n_per_m.size() / 2));
@@ -117,7 +117,8 @@ std::vector<std::string> unusual_displacements(const std::vector<Load>& loads) {
   if (n_per_um < 0.02 || n_per_um > 50.0) {
     out.push_back(fmt::format(
         "force over displacement is {:.3g} N/um in the middle of the loads; 0.02 to 50 N/um is usual. {}", n_per_um,
-        n_per_um < 0.02 ? "Are displacements in um, or forces in kN or kgf?" : "Are displacements in m, or forces in mN?"));
+        n_per_um < 0.02 ? "Are displacements in um, or forces in kN or kgf?"
+                        : "Are displacements in m, or forces in mN?"));
   }
   return out;
 }
