@@ -71,7 +71,11 @@ TEST_F(SmoothVerb, ARobotProgramBeyondItsTolerancesExitsWithThree) {
 
 TEST_F(SmoothVerb, RobotProgramsKnowToolLoadAndSpindle) {
   folder_.file("spin.ngc", "G21 G90 G94\nS9000 M3\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nS7000\nG1 X0\nM5\nM30\n");
-  ASSERT_EQ(robomill("smooth spin.ngc --cell cell.toml -o bare.src").exit, 0);
+  // One output carries out one speed: such a program is written only where that is asked for.
+  EXPECT_EQ(robomill("smooth spin.ngc --cell cell.toml -o bare.src").exit, 3);
+  EXPECT_FALSE(there("bare.src"));
+  EXPECT_EQ(robomill("smooth spin.ngc --cell cell.toml -o bare.src --keep-violations").exit, 3);
+  ASSERT_TRUE(there("bare.src"));
   const std::string bare = slurp(folder_.at("bare.src"));
   EXPECT_NE(bare.find("\n; NOT SET: the tool"), std::string::npos);
   EXPECT_NE(bare.find("NOT CARRIED OUT: before line 6, spindle M3, 7000 rpm"), std::string::npos)
@@ -79,6 +83,7 @@ TEST_F(SmoothVerb, RobotProgramsKnowToolLoadAndSpindle) {
   std::string cell = slurp(folder_.at("cell.toml"));
   cell.replace(cell.find("[tool]\n"), 7, "[spindle]\noutput = 7\n[tool]\nnumber = 3\n");
   folder_.file("known.toml", cell);
+  folder_.file("spin.ngc", "G21 G90 G94\nS9000 M3\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X0\nM5\nM30\n");
   ASSERT_EQ(robomill("smooth spin.ngc --cell known.toml -o known.src").exit, 0);
   const std::string known = slurp(folder_.at("known.src"));
   EXPECT_EQ(known.find("NOT SET"), std::string::npos);

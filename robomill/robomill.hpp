@@ -119,6 +119,7 @@
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/end_effector.hpp"
 #include "robomill/path/files/motion_json.hpp"
+#include "robomill/path/files/path_clearance.hpp"
 #include "robomill/path/files/smooth_json.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/interpolator.hpp"

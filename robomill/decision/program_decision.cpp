@@ -240,6 +240,15 @@ void put_together(const std::vector<ProgramCut>& cuts, const SpeedWay& way, cons
 
 }  // namespace
 
+LimitUse FeedRange::contradiction() const {
+  LimitUse out = most_by;
+  // These rise as the feed does.
+  const bool as_feed = out.limit == ProgramLimit::greatest_chip || out.limit == ProgramLimit::tip_speed ||
+                       out.limit == ProgramLimit::joint_speed;
+  if (as_feed && most_m_per_s > 0.0) out.value = out.allowed * least_m_per_s / most_m_per_s;
+  return out;
+}
+
 std::string_view to_string(ProgramLimit limit) {
   return name_in(program_limit_names, limit);
 }

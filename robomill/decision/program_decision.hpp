@@ -77,6 +77,8 @@ struct FeedRange {
   double least_m_per_s = 0.0, most_m_per_s = 0.0;  ///< none where least > most
   LimitUse least_by = {},
            most_by = {};  ///< what limits them; value: of loads at the least feed, else at the programmed one
+  /// What keeps a range that is empty from a feed: most_by, with the value at the least feed of it.
+  [[nodiscard]] ROBOMILL_API LimitUse contradiction() const;
 };
 
 /// A class of cuts at a speed in a posture.

@@ -49,12 +49,17 @@ struct Violation {
 /// What a program comes to under some conditions.
 struct Outcome {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double cutting_time_s = 0.0;
-  double total_time_s = 0.0;  ///< with air at feed, dwells and changes of the spindle's speed, without rapids
+  double cutting_time_s = 0.0;  ///< length / feed of what cuts: the tool at its feed throughout
+  double robot_time_s = none;   ///< of the whole program along its smoothed trajectory; NaN: there is none
+  double total_time_s =
+      0.0;  ///< cutting time with air at feed, dwells and changes of the spindle's speed, without rapids
   double lowest_spindle_speed_rad_per_s = 0.0, highest_spindle_speed_rad_per_s = 0.0;
-  std::size_t unstable_blocks = 0;
-  double least_stability_margin = none;
-  double peak_force_n = 0.0, peak_torque_n_m = 0.0, peak_power_w = 0.0, peak_deflection_m = 0.0;
+  std::size_t unstable_blocks = 0;       ///< deeper than their mean limit
+  std::size_t uncertain_blocks = 0;      ///< stable by that, but deeper than its 5 % quantile: their margin is below 0
+  double least_stability_margin = none;  ///< 1 − depth / 5 % quantile of the limit
+  double peak_force_n = 0.0, peak_deflection_m = 0.0;
+  double revolution_torque_n_m = 0.0;      ///< largest mean over a revolution
+  double sustained_power_w = 0.0;          ///< largest mean over the time that counts for the spindle's curve
   double worst_surface_error_m = none;     ///< its magnitude
   double greatest_torque_share = 0.0;      ///< of a joint's drive; 0: not known, or no limit is given
   std::size_t reversals = 0;               ///< blocks in which the load of a joint turns round while it cuts

@@ -36,6 +36,7 @@ struct ROBOMILL_API DecideOptions {
   std::vector<Free> free = {Free::spindle_speed, Free::feed};
   Goal goal = Goal::time;
   SpeedChanges speed_changes = SpeedChanges::air;
+  bool speed_changes_given = false;  ///< the job says so; else the output may ask for one speed
   /// > 0; of the spindle. The default is an assumption: 3,000 rpm a second.
   double spindle_ramp_rad_per_s2 = 314.159265358979;
   double max_force_n = 0.0;                         ///< >= 0; peak on the tool; 0: no limit

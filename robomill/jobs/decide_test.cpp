@@ -166,13 +166,13 @@ TEST_F(Decide, ForceDeflectionTorqueAndPowerAreKept) {
   check([&](DecideProblem& p) { p.options.max_force_n = force; }, &Outcome::peak_force_n, force);
   const double deflection = 0.8 * free.decided->peak_deflection_m;
   check([&](DecideProblem& p) { p.options.max_deflection_m = deflection; }, &Outcome::peak_deflection_m, deflection);
-  const double power = 0.8 * free.decided->peak_power_w;
+  const double power = 0.8 * free.decided->sustained_power_w;
   check(
       [&](DecideProblem& p) {
         p.machine.spindle = {{.spindle_speed_rad_per_s = 6000.0 * units::rpm, .torque_n_m = 100.0, .power_w = power},
                              {.spindle_speed_rad_per_s = 18000.0 * units::rpm, .torque_n_m = 100.0, .power_w = power}};
       },
-      &Outcome::peak_power_w, power);
+      &Outcome::sustained_power_w, power);
 }
 
 // The run that is written keeps what the search kept by the engagement of the program as it was.

@@ -200,13 +200,25 @@ void smooth(PlanResult& result, const CellFile& cell, const std::filesystem::pat
     io::make_folder(folder);
     smooth.output = folder / "trajectory.csv";
   }
-  result.path = run_smooth(smooth, cell, progress);
-  if (!result.path->holds()) {
-    result.warnings.push_back(fmt::format(
-        "The smoothed program breaks limits {} times: there is no trajectory{}. See the limits of each joint.",
-        result.path->first().summary.check.violations(),
-        result.path->stale ? ", and the one of an earlier run was removed" : ""));
+  if (cell.geometry && !result.job.forces.empty()) {
+    smooth.cutter = read_forces(result.job.forces, ForcesJob::program).cutter;
   }
+  result.path = run_smooth(smooth, cell, progress);
+}
+
+/// Of the program that is to run, as it was or as it was decided.
+void warn_of_path(PlanResult& result) {
+  if (!result.path || result.path->holds()) return;
+  const SmoothResult& path = *result.path;
+  const char* removed = path.stale ? ", and the one of an earlier run was removed" : "";
+  if (!path.clear()) {
+    result.warnings.push_back(fmt::format("There is no trajectory{}. On its way {}.", removed,
+                                          path::clearance_text(*path.smoothed.clearance)));
+    return;
+  }
+  result.warnings.push_back(fmt::format(
+      "The smoothed program breaks limits {} times: there is no trajectory{}. See the limits of each joint.",
+      path.first().summary.check.violations(), removed));
 }
 
 /// Where the robot stands along a program: as the smoothed path has it, where there is one.
@@ -330,6 +342,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
         "The job names no lobes.toml: there are no lobes, no recommended speed and depth, and test cuts are not "
         "compared.");
   }
+  warn_of_path(result);
   gather_assumed(result, cell ? &*cell : nullptr);
   return result;
 }
@@ -348,7 +361,13 @@ PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed, P
   return result;
 }
 
+bool collisions_checked(const PlanResult& result) {
+  if (result.path) return result.path->smoothed.clearance.has_value();
+  return result.decision && result.decision->collisions_checked;
+}
+
 bool reached(const PlanResult& result) {
+  if (result.decision && !result.decision->collision.empty()) return false;
   if (result.decision && result.decision->status == DecideResult::Status::infeasible) return false;
   if (result.path && !result.path->holds()) return false;
   if (result.blocks && !result.recommends()) return true;  // an unstable block is an answer

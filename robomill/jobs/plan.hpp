@@ -102,6 +102,10 @@ struct PlanResult {
 [[nodiscard]] ROBOMILL_API PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed,
                                                     Progress& progress = Progress::none());
 
+/// Whether the way of the program that is to run was checked for collisions: along its trajectory, or without one from
+/// block to block.
+[[nodiscard]] ROBOMILL_API bool collisions_checked(const PlanResult& result);
+
 /// Whether the job has the answer that it is for: conditions or a recommendation within every limit, a path that holds.
 [[nodiscard]] ROBOMILL_API bool reached(const PlanResult& result);
 

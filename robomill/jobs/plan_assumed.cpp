@@ -32,14 +32,10 @@ void gather_assumed(PlanResult& result, const CellFile* cell) {
                                   .key = "tool.mass_kg",
                                   .file = cell->path.filename().string()}});
   }
-  const Assumption unchecked = {.what = "Collisions", .taken = "none; nothing was checked"};
+  if (cell == nullptr || result.job.program.empty()) return;
+  const Assumption unchecked = unchecked_collisions(*cell);
   std::erase(result.assumed, unchecked);
-  if (cell == nullptr || result.job.program.empty() || (result.decision && result.decision->collisions_checked)) return;
-  result.assumed.push_back(unchecked);
-  if (result.decision) {
-    result.assumed.back().key = "geometry";
-    result.assumed.back().file = cell->path.filename().string();
-  }
+  if (!collisions_checked(result)) result.assumed.push_back(unchecked);
 }
 
 }  // namespace robomill::jobs

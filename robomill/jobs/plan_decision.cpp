@@ -36,7 +36,7 @@ std::vector<std::string> header_of(const PlanResult& result) {
   std::vector<std::string> out = {
       fmt::format("Spindle speeds and feeds by robomill {}, from {}", ROBOMILL_VERSION,
                   result.job.program.filename().string()),
-      fmt::format("{} changes of S, {} of F. Least stability margin {:.2f}, cutting time {:.4g} s",
+      fmt::format("{} changes of S, {} of F. Least stability margin {:.2f}, cutting time at the feeds {:.4g} s",
                   decision.speeds_changed, decision.feeds_changed, decision.decided->least_stability_margin,
                   decision.decided->cutting_time_s)};
   std::string path = leans(decision)
@@ -48,12 +48,8 @@ std::vector<std::string> header_of(const PlanResult& result) {
     path += fmt::format("Finishing passes are moved by up to {:.3g} mm against the deflection that is predicted. ",
                         decision.compensation->largest_offset_m / units::mm);
   }
-  if (!decision.collision.empty()) {
-    path += "CAUTION: " + decision.collision;
-  } else {
-    path += decision.collisions_checked ? "The way was checked against the cell's geometry"
-                                        : "Nothing was checked for collisions";
-  }
+  path += decision.collisions_checked ? "The way was checked against the cell's geometry"
+                                      : "Nothing was checked for collisions: the cell has no [geometry]";
   out.push_back(std::move(path));
   return out;
 }
@@ -151,6 +147,7 @@ void smooth_decided(PlanResult& result, const CellFile& cell, const std::filesys
                    .program_name = result.program_name,
                    .posture = posture_of(*result.path, written, *decision.program, decision.gamma_offset_rad, cell)};
   if (!folder.empty()) job.output = folder / "trajectory.csv";
+  job.cutter = result.forces->file.cutter;
   result.path = run_smooth(job, cell, progress);
 }
 
@@ -177,6 +174,7 @@ std::vector<double> torque_shares(const PlanResult& result, const CellFile& cell
                          .place = false,
                          .program_name = name,
                          .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
+                         .check_collisions = false,
                          .observe = [&loads](std::span<const path::Sample> samples) { loads.add(samples); }};
   static_cast<void>(run_smooth(job, cell, progress));
   return loads.shares(run.forces, run.blocks.joint_loads);
@@ -204,6 +202,24 @@ void withdraw(SmoothResult& path) {
   path.stale = !path.output.empty() && std::filesystem::is_regular_file(path.output, ignored);
 }
 
+/// A spindle that a robot program switches on by an output runs at one speed: the one that its drive is set to.
+void take_one_speed(const CellFile& cell, DecideOptions& options, PlanResult& result) {
+  if (options.speed_changes == SpeedChanges::none) return;
+  if (!options.speed_changes_given) {
+    options.speed_changes = SpeedChanges::none;
+    result.assumed.push_back({.what = "Changes of the spindle's speed",
+                              .taken = "none: spindle.output of the cell only switches the spindle on",
+                              .key = "decide.speed_changes",
+                              .file = result.job.file.filename().string()});
+    return;
+  }
+  result.notes.push_back(
+      fmt::format("decide.speed_changes allows several spindle speeds; a robot program carries out one, since "
+                  "spindle.output of {} only "
+                  "switches the spindle on.",
+                  cell.path.filename().string()));
+}
+
 }  // namespace
 
 void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsAt& dynamics,
@@ -215,6 +231,9 @@ void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsA
                            .machine = result.job.recommend,
                            .finish = result.job.finish,
                            .options = result.job.decide};
+  if (cell.end_effector.spindle.given() && problem.options.is_free(Free::spindle_speed)) {
+    take_one_speed(cell, problem.options, result);
+  }
   if (result.path) {
     problem.max_tip_speed_m_per_s = result.path->options.max_velocity_m_per_s;
     if (knows_torques(cell)) {
@@ -230,11 +249,24 @@ void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsA
     if (result.path) withdraw(*result.path);
     return;
   }
+  if (result.path) result.decision->as_programmed.robot_time_s = result.path->first().summary.duration_s;
   write_program(result, cell);
-  if (result.path) smooth_decided(result, cell, folder, progress);
+  if (result.path) {
+    smooth_decided(result, cell, folder, progress);
+    result.decision->decided->robot_time_s = result.path->first().summary.duration_s;
+  }
+  const bool collides = !result.decision->collision.empty() || (result.path && !result.path->clear());
+  if (collides) {
+    // No file of a way that strikes something.
+    result.program_out.reset();
+    if (result.path) withdraw(*result.path);
+    if (!result.path || result.path->clear()) {
+      result.warnings.push_back("There is no program: on its way " + result.decision->collision + ".");
+    }
+  }
   result.forces = *std::exchange(result.decision->forces, std::nullopt);
   result.blocks = *std::exchange(result.decision->blocks, std::nullopt);
-  result.monitor = monitor_of(result, dynamics);
+  if (!collides) result.monitor = monitor_of(result, dynamics);
 }
 
 }  // namespace robomill::jobs

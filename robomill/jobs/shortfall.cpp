@@ -97,7 +97,11 @@ std::string shortfall(const CellCheck& result) {
 std::string shortfall(const SmoothResult& result) {
   if (result.holds()) return {};
   std::string what = "the trajectory breaks limits";
-  if (result.trajectory_holds()) {
+  if (!result.clear()) {
+    what = path::clearance_text(*result.smoothed.clearance);
+  } else if (result.trajectory_holds() && !result.smoothed.robot_program->one_speed()) {
+    what = "the robot program carries out one spindle speed of several, see the notes";
+  } else if (result.trajectory_holds()) {
     what = result.smoothed.robot_program->too_long() ? "the robot program is too long for its controller, see the notes"
                                                      : "the robot program leaves its tolerances, see the notes";
   }

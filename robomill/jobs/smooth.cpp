@@ -14,8 +14,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/assumed.hpp"
+#include "robomill/jobs/path_clearance.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/path/files/trajectory.hpp"
@@ -115,6 +117,8 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   info.cell = bench.cell.path.filename().string();
   info.program = name_of(job);
   info.end_effector = bench.cell.end_effector;
+  info.workpiece = bench.cell.cell.workpiece;
+  info.maker = bench.cell.maker;
   return path::open_sample_file(job.output, info);
 }
 
@@ -250,6 +254,61 @@ std::string length_note(const path::ProgramRun& run) {
                       : "Split the NC program where the tool is clear of the part.");
 }
 
+/// A joint program of more spindle speeds than it can carry out, and what would help.
+std::string speeds_note(const path::ProgramRun& run) {
+  std::string speeds;
+  for (const double speed : run.spindle_speeds_rad_per_s) {
+    speeds += fmt::format("{}{:.6g}", speeds.empty() ? "" : ", ", speed / units::rpm);
+  }
+  return fmt::format(
+      "The NC program asks for {} spindle speeds, {} rpm; a robot program only switches the spindle on and carries out "
+      "one. Give the program one speed (decide.speed_changes = \"none\" in the job of robomill plan), or split it "
+      "where "
+      "the speed changes.",
+      run.spindle_speeds_rad_per_s.size(), speeds);
+}
+
+/// How far bodies are looked for beyond the cell's clearance, so that a least distance can be said.
+constexpr double reach_m = 0.05;
+
+std::size_t line_of(program::Source& program, std::size_t block) {
+  program.rewind();
+  program::Block at;
+  for (std::size_t k = 0; program.next(at); ++k) {
+    if (k == block) return at.line;
+  }
+  return 0;
+}
+
+/// The way from where the arm stands first to where a joint program begins, which its controller drives in the joints.
+void note_approach(const Bench& bench, const robot::CollisionChecker& checker, const robot::Position6& first,
+                   std::vector<std::string>& notes) {
+  const std::vector<double>& home = bench.cell.start_joints;
+  const auto joints = static_cast<Eigen::Index>(bench.cell.cell.arm.joints.size());
+  if (static_cast<Eigen::Index>(home.size()) != joints) return;
+  const Eigen::VectorXd from = Eigen::Map<const Eigen::VectorXd>(home.data(), joints);
+  const robot::MoveClearance move = checker.check_move(from, first.head(joints), look_step_m(*bench.cell.geometry));
+  if (move.clearance.status == robot::Clearance::Status::clear) return;
+  notes.push_back(
+      fmt::format("On the straight way of the joints from start_joints_deg to the first position, {:.0f} % of the way, "
+                  "{}: bring the "
+                  "robot to the first position another way.",
+                  100.0 * move.fraction, near_miss_text(move.clearance)));
+}
+
+/// Whose controller a joint program is for, where the cell does not say whose arm it is.
+std::optional<Assumption> assumed_maker(const SmoothJob& job, const CellFile& cell) {
+  if (!cell.maker.empty()) return std::nullopt;
+  const std::string ending = io::lowered(job.output.extension().string());
+  const char* maker = ending == ".src" ? path::maker_kuka : ending == ".mod" ? path::maker_abb : nullptr;
+  if (ending == ".script" || ending == ".servoj") maker = path::maker_universal_robots;
+  if (maker == nullptr) return std::nullopt;
+  return Assumption{.what = "Maker of the arm",
+                    .taken = fmt::format("{}, by the ending {}; joints must have its zeros and signs", maker, ending),
+                    .key = "robot.model",
+                    .file = cell.path.filename().string()};
+}
+
 /// @param exported  the trajectory is written as a robot program, which sets the load
 std::vector<Assumption> assumed_of(const Bench& bench, bool exported) {
   std::vector<Assumption> out = assumed_along_program(bench.cell, true);
@@ -262,7 +321,6 @@ std::vector<Assumption> assumed_of(const Bench& bench, bool exported) {
                    .key = end.center_m ? "tool.load_number" : "tool.center_mm",
                    .file = bench.cell.path.filename().string()});
   }
-  out.push_back({.what = "Collisions", .taken = "none; nothing was checked"});
   return out;
 }
 
@@ -281,7 +339,9 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
   const std::vector<std::string> corrected = bench.program->notes();
   notes.insert(notes.end(), corrected.begin(), corrected.end());
-  smoothed.assumed = assumed_of(bench, smoothed.robot_program.has_value());
+  add_assumed(smoothed.assumed, assumed_of(bench, smoothed.robot_program.has_value()));
+  if (const std::optional<Assumption> maker = assumed_maker(job, bench.cell)) smoothed.assumed.push_back(*maker);
+  if (!smoothed.clearance) smoothed.assumed.push_back(unchecked_collisions(bench.cell));
   const std::size_t left_out = bench.program->skipped_count();
   if (left_out > smoothed.skipped.size()) {
     notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
@@ -289,6 +349,7 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   }
   if (result.trajectory_holds() && smoothed.robot_program) {
     if (!smoothed.robot_program->keeps_tolerances()) notes.push_back(program_note(*smoothed.robot_program));
+    if (!smoothed.robot_program->one_speed()) notes.push_back(speeds_note(*smoothed.robot_program));
     if (smoothed.robot_program->too_long()) notes.push_back(length_note(*smoothed.robot_program));
   }
   if (!bench.posture.whole) {
@@ -297,19 +358,57 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   }
 }
 
+/// What the check for collisions cannot say, or says of the way to the first position.
+void note_clearance(SmoothResult& result, const Bench& bench, const robot::CollisionChecker& checker,
+                    const std::optional<robot::Position6>& first) {
+  std::vector<std::string>& notes = result.smoothed.notes;
+  for (const std::string& note : checker.notes()) notes.push_back("Collisions: " + note + ".");
+  if (!result.smoothed.clearance->covers_moves()) {
+    notes.push_back(
+        fmt::format("Collisions: between two positions that were looked at a point moves up to {:.3g} mm; only a "
+                    "clearance of half of "
+                    "that, geometry.clearance_mm, leaves nothing unseen.",
+                    result.smoothed.clearance->between_m / units::mm));
+  }
+  if (result.smoothed.robot_program && first) note_approach(bench, checker, *first, notes);
+}
+
 }  // namespace
+
+Assumption unchecked_collisions(const CellFile& cell) {
+  Assumption out{.what = "Collisions", .taken = "none; nothing was checked"};
+  if (cell.hybrid) return out;  // whose bodies cannot be given
+  out.key = "geometry";
+  out.file = cell.path.filename().string();
+  return out;
+}
 
 SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   return run_smooth(job, read_cell(job.cell, Robots::any), progress);
 }
 
 SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress) {
-  const Bench bench = prepare(job, std::move(cell));
+  Bench bench = prepare(job, std::move(cell));
   SmoothResult result;
   result.options = bench.smoothing.options;
   result.posture = bench.posture;
   result.reading = bench.reading;
   std::unique_ptr<path::SampleFile> file = open_output(job, bench);
+  std::unique_ptr<robot::CollisionChecker> checker;
+  if (job.check_collisions) {
+    checker = clearance_checker(bench.cell, job.cutter ? &*job.cutter : nullptr, result.smoothed.assumed);
+  }
+  std::optional<PathLooks> looks;
+  if (checker) looks.emplace(*checker, bench.machine->joints(), look_step_m(*bench.cell.geometry));
+  std::optional<robot::Position6> first_position;
+  const path::SampleSink observe = [&](std::span<const path::Sample> samples) {
+    if (looks && !samples.empty() && samples.front().time_s == 0.0) {
+      looks->restart();
+      first_position = samples.front().joints;
+    }
+    if (looks) looks->add(samples);
+    if (job.observe) job.observe(samples);
+  };
   std::optional<path::MotionRecorder> recorder;
   if (job.record) {
     result.outline = path::outline(*bench.program, result.options.tip_tolerance_m);
@@ -325,7 +424,7 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
       }
       result.smoothed.methods.push_back(located_in_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr,
-                         asked_for ? &result.block_joints : nullptr, asked_for ? job.observe : path::SampleSink{},
+                         asked_for ? &result.block_joints : nullptr, asked_for ? observe : path::SampleSink{},
                          progress);
       }));
     } catch (const InvalidInput& error) {
@@ -333,6 +432,11 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
       result.smoothed.notes.push_back(
           fmt::format("{} is left out: {}", name_in(path::method_names, method), error.what()));
       continue;
+    }
+    if (asked_for && looks) {
+      path::PathClearance& clearance =
+          result.smoothed.clearance.emplace(looks->check(bench.cell.geometry->clearance_m, reach_m));
+      clearance.line = line_of(*bench.program, clearance.block);
     }
     if (asked_for && file != nullptr) {
       result.smoothed.robot_program = located_in_program(job.program, [&] {
@@ -342,9 +446,11 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
     if (recorder) result.motions.push_back(recorder->motion());
   }
   report(result, job, bench);
+  if (checker) note_clearance(result, bench, *checker, first_position);
   if (file == nullptr) return result;
+  if (result.smoothed.clearance) file->state_collisions(path::clearance_text(*result.smoothed.clearance));
   result.output = job.output;
-  result.smoothed.written = result.holds() || job.keep_violations;
+  result.smoothed.written = result.holds() || (job.keep_violations && result.clear());
   if (result.smoothed.written) {
     result.trajectory = std::move(file);
   } else {

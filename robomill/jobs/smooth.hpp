@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/cutting/cutter.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/path/files/smooth_json.hpp"
 #include "robomill/path/files/trajectory.hpp"
@@ -32,7 +33,10 @@ struct SmoothJob {
   bool place = true;                          ///< at the end; else place() is the caller's to call
   std::string program_name = {};              ///< as files and reports name it; empty: its file's name
   std::optional<path::Posture> posture = {};  ///< not given: chosen
-  path::SampleSink observe = {};              ///< takes the samples too, of the method asked for; time 0 begins anew
+  /// Check the trajectory for collisions where the cell has [geometry].
+  bool check_collisions = true;
+  std::optional<cutting::Cutter> cutter = {};  ///< for that check; not given: the shank stands for it
+  path::SampleSink observe = {};               ///< takes the samples too, of the method asked for; time 0 begins anew
 };
 
 struct SmoothResult {
@@ -51,14 +55,18 @@ struct SmoothResult {
   [[nodiscard]] const path::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.
   [[nodiscard]] bool trajectory_holds() const { return first().summary.check.violations() == 0; }
-  /// … and the joint program made of it, where there is one, keeps the tolerances as its controller runs it.
+  /// Whether no collision was found on its way; true too where nothing was checked.
+  [[nodiscard]] bool clear() const { return !smoothed.clearance || smoothed.clearance->clear(); }
+  /// … and the joint program made of it, where there is one, keeps the tolerances as its controller runs it, at one
+  /// spindle speed.
   [[nodiscard]] bool holds() const {
-    return trajectory_holds() && (!smoothed.robot_program || smoothed.robot_program->holds());
+    return trajectory_holds() && clear() && (!smoothed.robot_program || smoothed.robot_program->holds());
   }
 };
 
-/// Smooths a program and writes its trajectory, or the joint program made of it, if it holds every limit; if not, a
-/// file that stands in its place from an earlier run is taken away.
+/// Smooths a program and writes its trajectory, or the joint program made of it, if it holds every limit and collides
+/// with nothing that the cell's [geometry] describes; if not, a file that stands in its place from an earlier run is
+/// taken away.
 /// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
 [[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
 /// The same in a cell that has been read, for any robot, from its file.
@@ -68,6 +76,9 @@ struct SmoothResult {
 /// Moves the trajectory of a job that does not place it to its place, or takes away what stands there from an earlier
 /// run. Once. @throws InvalidInput if that fails
 ROBOMILL_API void place(const SmoothResult& result);
+
+/// What a trajectory that was not checked for collisions takes for granted.
+[[nodiscard]] ROBOMILL_API Assumption unchecked_collisions(const CellFile& cell);
 
 /// The most of a joint's velocity, acceleration or jerk limit that a trajectory uses.
 [[nodiscard]] ROBOMILL_API double joint_share(const path::CheckResult& check);

@@ -176,9 +176,17 @@ void add_disagreement(std::string& out, const Agreement& count) {
          count.disagree, count.agree + count.disagree);
 }
 
+/// Blocks that are stable by the mean prediction and not by its 5 % quantile.
+std::string uncertain_text(std::size_t blocks) {
+  return blocks > 0 ? fmt::format(" by the mean prediction, {} more may, within its uncertainty", blocks)
+                    : std::string();
+}
+
 /// How many blocks chatter, first of all.
 void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlocks& blocks) {
-  append(out, "blocks       {} of {} that cut are unstable", blocks.unstable, blocks.cutting);
+  const auto within = [](const BlockRow& row) { return row.cuts && !row.unstable() && row.stability_margin < 0.0; };
+  append(out, "blocks       {} of {} that cut are unstable{}", blocks.unstable, blocks.cutting,
+         uncertain_text(static_cast<std::size_t>(std::ranges::count_if(blocks.rows, within))));
   if (blocks.cutting == 0) {
     append(out, "\n");
     return;
@@ -208,8 +216,11 @@ void add_decision(std::string& out, const PlanResult& result) {
     return low == high ? fmt::format("{:.0f} rpm", low) : fmt::format("{:.0f} to {:.0f} rpm", low, high);
   };
   const auto add = [&](const char* word, const Outcome& o) {
-    append(out, "{} {}, {:.4g} s of cutting, least stability margin {:.2f}, {} blocks chatter\n", word, rpm(o),
-           o.cutting_time_s, o.least_stability_margin, o.unstable_blocks);
+    append(out, "{} {}, {:.4g} s of cutting at the feeds{}\n", word, rpm(o), o.cutting_time_s,
+           std::isfinite(o.robot_time_s) ? fmt::format(", {:.4g} s the robot's time for the program", o.robot_time_s)
+                                         : "");
+    append(out, "             least stability margin {:.2f} of the limits' 5 % quantile; {} blocks chatter{}\n",
+           o.least_stability_margin, o.unstable_blocks, uncertain_text(o.uncertain_blocks));
     for (const Violation& v : o.violations) {
       append(out, "               {} in block {}\n",
              limit_text({.limit = v.limit, .value = v.value, .allowed = v.allowed}), v.block + 1);
@@ -218,6 +229,12 @@ void add_decision(std::string& out, const PlanResult& result) {
   add("as programmed", before);
   if (decision.decided) {
     add("as decided   ", *decision.decided);
+    if (std::isfinite(before.robot_time_s) && before.robot_time_s > 0.0) {
+      const double share = decision.decided->robot_time_s / before.robot_time_s - 1.0;
+      append(out, "             {:.0f} % {} of the robot's time\n", 100.0 * std::abs(share),
+             share < 0.0 ? "less" : "more");
+    }
+    append(out, "             collisions {}\n", collisions_checked(result) ? "checked" : "not checked");
     append(out, "             {} changes of S, {} of F, {} lines of {} changed; {} cuts looked at, {} runs, {:.3g} s\n",
            decision.speeds_changed, decision.feeds_changed, result.program_out ? result.program_out->changed_lines : 0,
            result.program_name, decision.evaluations, decision.exact_runs, decision.seconds);
@@ -300,6 +317,8 @@ std::string summary(const SmoothResult& result) {
   if (result.smoothed.methods.size() > 1) add_methods(out, result.smoothed);
   if (result.smoothed.robot_program) add_run(out, *result.smoothed.robot_program);
   append(out, "\n{} violations of limits\n", run.check.violations());
+  append(out, "collisions {}\n",
+         result.smoothed.clearance ? printable(path::clearance_text(*result.smoothed.clearance)) : "not checked");
   for (const program::Skipped& item : result.smoothed.skipped)
     append(out, "skipped    line {}: {}\n", item.line, printable(item.what));
   add_notes(out, result.smoothed.notes, "note       ");

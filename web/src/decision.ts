@@ -13,15 +13,17 @@ export interface Violation {
 
 /** What a program comes to; null: not known. */
 export interface Outcome {
-  cutting_time_s: Num;
-  total_time_s: Num; // without rapids
+  cutting_time_s: Num; // of what cuts, at its feed throughout
+  robot_time_s?: Num; // of the whole program along its smoothed trajectory
+  total_time_s: Num; // at feed, without rapids
   lowest_spindle_speed_rpm: Num;
   highest_spindle_speed_rpm: Num;
   unstable_blocks: Num;
+  uncertain_blocks?: Num; // stable by the mean prediction, not by its 5 % quantile
   least_stability_margin: Num;
   peak_force_n: Num;
-  peak_torque_n_m: Num;
-  peak_power_w: Num;
+  revolution_torque_n_m: Num; // highest mean over a revolution
+  sustained_power_w: Num;
   peak_deflection_um: Num;
   worst_surface_error_um: Num;
   violations: Violation[];

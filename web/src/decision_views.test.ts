@@ -5,6 +5,7 @@ import {
   beyondText,
   collisionCaution,
   columnFacts,
+  decidedTime,
   feedText,
   leanText,
   leastAlong,
@@ -51,6 +52,12 @@ it('finds a place along the path, and a block that is not in the map', () => {
 it('says what is known of one place', () => {
   expect(columnFacts(map, 0).map(({ value }) => value)).toEqual(['3', '10.0\u202fmm', '-10°, margin -0.2', '5°, margin 0.3', '0.4 at 10°']);
   expect(columnFacts(map, 2).map(({ value }) => value)).toEqual(['9', '40.0\u202fmm', '0°, margin –', 'the robot cannot stand here']);
+});
+
+it('shows the robot’s time where there is one', () => {
+  const outcome = (robot_time_s: number | null) => ({ robot_time_s, cutting_time_s: 22 }) as Outcome;
+  expect(decidedTime(outcome(47), outcome(29))).toEqual({ label: 'Robot’s time', before: 47, decided: 29 });
+  expect(decidedTime(outcome(null), outcome(null)).label).toBe('Cutting time at the feeds');
 });
 
 it('says what is saved', () => {

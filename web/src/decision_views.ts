@@ -43,21 +43,34 @@ export function cuttingTimeText({ cutting_time_s: value }: Outcome): string {
   return said(value, time);
 }
 
+/** The robot's time for the program where there is a trajectory of it, else that of the feeds. */
+export function decidedTime(before: Outcome, decided: Outcome): { label: string; before: Num; decided: Num } {
+  const { robot_time_s: robot = null } = decided;
+  if (robot !== null) return { label: 'Robot’s time', before: before.robot_time_s ?? null, decided: robot };
+  return { label: 'Cutting time at the feeds', before: before.cutting_time_s, decided: decided.cutting_time_s };
+}
+
+export function timeText(value: Num): string {
+  return said(value, time);
+}
+
 /** Those with a limit. */
 export const limited: Measure[] = [
-  { name: 'Least stability margin', unit: '', limit: 'stability', chatters: ({ least_stability_margin: least }) => (least ?? 0) < 0, text: (outcome) => said(outcome.least_stability_margin) },
+  { name: 'Least stability margin, of the limit’s 5 % quantile', unit: '', limit: 'stability', chatters: ({ least_stability_margin: least }) => (least ?? 0) < 0, text: (outcome) => said(outcome.least_stability_margin) },
   { name: 'Peak force', unit: 'N', limit: 'force', text: (outcome) => said(outcome.peak_force_n) },
-  { name: 'Peak torque', unit: 'N·m', limit: 'torque', text: (outcome) => said(outcome.peak_torque_n_m) },
-  { name: 'Peak power', unit: 'W', limit: 'power', text: (outcome) => said(outcome.peak_power_w) },
+  { name: 'Torque, mean of a revolution', unit: 'N·m', limit: 'torque', text: (outcome) => said(outcome.revolution_torque_n_m) },
+  { name: 'Sustained power', unit: 'W', limit: 'power', text: (outcome) => said(outcome.sustained_power_w) },
   { name: 'Peak deflection', unit: 'µm', limit: 'deflection', text: (outcome) => said(outcome.peak_deflection_um) },
   { name: 'Surface error', unit: 'µm', limit: 'surface_error', text: (outcome) => said(outcome.worst_surface_error_um) },
 ];
 
 export const measures: Measure[] = [
-  { name: 'Cutting time', unit: 's', text: cuttingTimeText },
-  { name: 'Time without rapids', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
+  { name: 'Robot’s time, whole program', unit: 's', text: (outcome) => said(outcome.robot_time_s ?? null, time) },
+  { name: 'Cutting time at the feeds', unit: 's', text: cuttingTimeText },
+  { name: 'Time at the feeds, without rapids', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
   { name: 'Spindle speed', unit: 'rpm', text: speedText },
   { name: 'Unstable blocks', unit: '', chatters: ({ unstable_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.unstable_blocks, whole) },
+  { name: 'Blocks that may chatter, within the uncertainty', unit: '', chatters: ({ uncertain_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.uncertain_blocks ?? null, whole) },
   ...limited,
 ];
 
@@ -134,7 +147,7 @@ function changesText(changes: Decision['changes']): string {
   return said.join(', ');
 }
 
-const goals: Record<Decision['goal'], string> = { time: 'shortest cutting time', removal_rate: 'highest removal rate' };
+const goals: Record<Decision['goal'], string> = { time: 'shortest cutting time at the feeds', removal_rate: 'highest removal rate' };
 const freedoms: Record<string, string> = { spindle_speed: 'spindle speed', feed: 'feed', gamma: 'γ', axial_depth: 'axial depth', lead: 'lead', tilt: 'tilt' };
 
 export function decisionFacts({ goal, free, changes, collisions_checked, evaluations, exact_runs, seconds }: Decision): Fact[] {

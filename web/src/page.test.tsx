@@ -149,7 +149,7 @@ it('says of a decision that violates limits which, and what is allowed', () => {
   const violation = { limit: 'spindle_power', block: 12, line: 25, value: 9.1, allowed: 7.5, unit: 'kW' };
   const html = decisionPage({ decided: { ...decided, violations: [violation] } });
   expect(html).toContain('violates 1 limit<');
-  expect(html).toContain('<div class="over"><dt>Peak power</dt>');
+  expect(html).toContain('<div class="over"><dt>Sustained power</dt>');
   expect(html).toContain('at most 7.5\u202fkW');
   expect(html).toContain('<td>Spindle power</td><td class="number">9.1\u202fkW</td><td class="number">at most 7.5\u202fkW</td>');
 });

@@ -144,4 +144,5 @@ export interface SmoothDocument extends SmoothedBy {
   skipped: { line: number; what: string }[];
   notes: string[];
   robot_program: { holds: boolean } | null;
+  collisions?: { status: 'clear' | 'too_near' | 'gouge' | 'collision'; text: string } | null; // null: not checked
 }

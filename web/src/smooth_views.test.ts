@@ -111,6 +111,9 @@ it('sets the duration beside its bound', () => {
 
 it('warns of what does not hold', () => {
   expect(smoothWarnings(smoothed())).toEqual([]);
+  const struck = { status: 'collision', text: 'spindle collides with post, line 5' } as const;
+  expect(smoothWarnings(smoothed({ collisions: struck }))).toEqual(['There is no trajectory: spindle collides with post, line 5.']);
+  expect(smoothFacts(smoothed({ collisions: null })).at(-1)!.value).toMatch(/^not checked/);
   expect(smoothWarnings(smoothed({ violations: 7 }))).toEqual(['7 violations of limits; the trajectory was written all the same.']);
   expect(smoothWarnings(smoothed({ violations: 7, written: false }))).toEqual(['7 violations of limits: there is no trajectory.']);
   expect(smoothWarnings(smoothed({ robot_program: { holds: true } }))).toEqual([]);

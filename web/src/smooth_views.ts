@@ -8,7 +8,7 @@ export function smoothedBy(document: SmoothDocument): [SmoothedBy, ...SmoothedBy
   return [first, ...others];
 }
 
-export function smoothFacts({ program, blocks, cell, joints, tip, axis, gamma_deg }: SmoothDocument): Fact[] {
+export function smoothFacts({ program, blocks, cell, joints, tip, axis, gamma_deg, collisions }: SmoothDocument): Fact[] {
   const degrees = (angle: Num) => `${general(angle ?? 0, 4)}°`;
   const facts = [
     { label: 'Program', value: `${program}, ${blocks} blocks` },
@@ -19,10 +19,12 @@ export function smoothFacts({ program, blocks, cell, joints, tip, axis, gamma_de
     const [lowest, highest] = gamma_deg.map(degrees);
     facts.push({ label: 'Turn about the tool', value: lowest === highest ? lowest! : `${lowest} to ${highest} along the way` });
   }
+  if (collisions !== undefined) facts.push({ label: 'Collisions', value: collisions?.text ?? 'not checked: the cell has no [geometry]' });
   return facts;
 }
 
-export function smoothWarnings({ violations, written, robot_program: program }: SmoothDocument): string[] {
+export function smoothWarnings({ violations, written, robot_program: program, collisions }: SmoothDocument): string[] {
+  if (collisions && collisions.status !== 'clear') return [`There is no trajectory: ${collisions.text}.`];
   if (violations > 0) return [`${violations} violations of limits${written ? '; the trajectory was written all the same' : ': there is no trajectory'}.`];
   if (!program || program.holds) return [];
   return [`The robot program does not hold, see the notes; it was ${written ? 'written all the same' : 'not written'}.`];

@@ -49,7 +49,7 @@ StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candi
     FeedRange range = model_.feeds(c, speed);
     std::optional<StretchTime> broken;
     if (range.least_m_per_s > range.most_m_per_s * (1.0 + rounding)) {
-      broken = stopped(range.most_by, apart(range.least_m_per_s, range.most_m_per_s), c);
+      broken = stopped(range.contradiction(), apart(range.least_m_per_s, range.most_m_per_s), c);
     } else if (!options_.free_feed) {
       const double feed = cuts_[c].feed_m_per_s;
       broken = broken_by(feed, range, c);

@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/cell_check/tool_places.hpp"
+#include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -29,7 +30,9 @@ void look_at_poses(const ToolPlaces& places, const path::Head& head, Placement& 
     ToolPlaces::Found found = places.find(pose);
     if (i == 0 && found.stand) {
       out.choice.posture = {.start = found.stand->position, .gamma_rad = {found.stand->gamma_rad}};
-      out.choice.margin.least = found.stand->margin;
+      const path::LimitShare limit = path::limit_share(places.machine(), found.stand->position);
+      const double margin = found.stand->margin;
+      out.choice.margin = {.least = margin, .joint = limit.share <= margin ? limit.joint : -1};
     }
     before = found.stand;
     if (found.stand) continue;

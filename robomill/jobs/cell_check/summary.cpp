@@ -134,12 +134,21 @@ std::string gamma_text(const CellCheck& check, const path::PostureChoice& choice
   return fmt::format(" with γ from {}° to {}°", decimal(low, units::deg, 1, true), decimal(high, units::deg, 1, true));
 }
 
+/// "margin 0.28, of joint 6: …": what the number is a share of.
+std::string margin_text(const path::Margin& margin) {
+  if (margin.joint < 0) {
+    return fmt::format("margin {:.3g}, to a singularity: 1 / condition number of the Jacobian", margin.least);
+  }
+  return fmt::format("margin {:.3g}, of joint {}: its way to the nearest limit over half its range, over 180° at most",
+                     margin.least, margin.joint + 1);
+}
+
 void add_placement(std::string& out, const CellCheck& check) {
   const Placement& placement = check.placement;
   const std::string what = check.program.empty() ? "the workpiece's origin" : printable(check.program);
   if (placement.works()) {
-    append(out, "\nplacement  {} is reached{}; margin {:.3g} (share of the way to a limit or a singularity)\n", what,
-           gamma_text(check, placement.choice), placement.choice.margin.least);
+    append(out, "\nplacement  {} is reached{}; least {}\n", what, gamma_text(check, placement.choice),
+           margin_text(placement.choice.margin));
     return;
   }
   append(out, "\nplacement  fails: ");
@@ -171,8 +180,8 @@ void add_proposals(std::string& out, const CellCheck& check) {
     append(out, "  origin_mm = [{}]\n  rotation_deg = [{}]\n",
            vector_text(proposal.placement.workpiece.translation(), units::mm, 3),
            vector_text(Eigen::Vector3d(turn.c_rad, turn.b_rad, turn.a_rad), units::deg, 4));
-    append(out, "  reached{}; margin {:.3g}\n", gamma_text(check, proposal.placement.choice),
-           proposal.placement.choice.margin.least);
+    append(out, "  reached{}; least {}\n", gamma_text(check, proposal.placement.choice),
+           margin_text(proposal.placement.choice.margin));
   }
 }
 

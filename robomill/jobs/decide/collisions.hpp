@@ -6,6 +6,7 @@
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/jobs/decide/apply.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/jobs/path_clearance.hpp"
 #include "robomill/robot/collision.hpp"
 
 namespace robomill::jobs {
@@ -26,8 +27,5 @@ struct NearMiss {
 /// @param cell     the checker's
 [[nodiscard]] std::vector<NearMiss> near_misses(const robot::CollisionChecker* checker, const CellFile& cell,
                                                 const Stands& stands);
-
-/// "holder comes within 0.4 mm of vise".
-[[nodiscard]] std::string near_miss_text(const robot::Clearance& clearance);
 
 }  // namespace robomill::jobs

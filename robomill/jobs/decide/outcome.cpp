@@ -162,11 +162,15 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.lowest_spindle_speed_rad_per_s = last_speed > 0.0 ? std::min(out.lowest_spindle_speed_rad_per_s, speed) : speed;
     out.highest_spindle_speed_rad_per_s = std::max(out.highest_spindle_speed_rad_per_s, speed);
     last_speed = speed;
-    if (row.unstable()) ++out.unstable_blocks;
+    if (row.unstable()) {
+      ++out.unstable_blocks;
+    } else if (row.stability_margin < 0.0) {
+      ++out.uncertain_blocks;
+    }
     out.least_stability_margin = std::fmin(out.least_stability_margin, row.stability_margin);
     out.peak_force_n = std::max(out.peak_force_n, load.force.peak_force_n);
-    out.peak_torque_n_m = std::max(out.peak_torque_n_m, load.force.revolution_torque_n_m);
-    out.peak_power_w = std::max(out.peak_power_w, load.force.sustained_power_w);
+    out.revolution_torque_n_m = std::max(out.revolution_torque_n_m, load.force.revolution_torque_n_m);
+    out.sustained_power_w = std::max(out.sustained_power_w, load.force.sustained_power_w);
     out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
     out.greatest_torque_share =
         std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));

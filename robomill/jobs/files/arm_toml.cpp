@@ -182,6 +182,7 @@ std::vector<robot::DhRow> read_model(io::TomlFile& file, CellFile& out) {
   }
   const std::string_view text = known_arm_cell(out.model);
   if (text.empty()) throw unknown_model(file, out.model);
+  out.maker = maker_of(out.model);
   io::TomlFile model(io::TomlSource(out.model + ".toml", std::string(text)));
   std::vector<robot::DhRow> rows = read_dh(model);
   out.cell.arm = robot::arm_from_dh(rows, read_pose(model, "robot.base_origin_mm", "robot.base_rotation_deg"));
@@ -202,6 +203,8 @@ void read_urdf_arm(io::TomlFile& file, CellFile& out) {
   file.text("robot.urdf_tip", reading.tip);
   file.text("robot.urdf_base", reading.base);
   robot::UrdfArm read = robot::read_urdf(urdf, reading);
+  out.maker = maker_of(read.name);
+  if (out.maker.empty()) out.maker = maker_of(urdf.stem().string());
   out.cell.arm = std::move(read.arm);
   out.notes = std::move(read.notes);
 }

@@ -122,6 +122,7 @@ Json workpiece_json(const Eigen::Isometry3d& workpiece) {
 void add_choice(const path::PostureChoice& choice, bool turns, Json& out) {
   const std::vector<double>& gamma_rad = choice.posture.gamma_rad;
   out["margin"] = io::number(choice.margin.least);
+  out["margin_joint"] = choice.margin.joint < 0 ? io::Json() : io::Json(choice.margin.joint + 1);
   if (!turns || gamma_rad.empty()) {
     out["gamma_deg"] = nullptr;
     return;

@@ -43,6 +43,7 @@ struct CellFile {
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
   std::vector<double> home = {};  ///< start_joints, else those of the model's own cell; empty where neither is said
   std::string model = {};         ///< robot.model: one of known_arms(); empty where not by name
+  std::string maker = {};  ///< of the arm, by its model or its URDF: path::maker_kuka, …; empty where not known
   std::string description = {}, source = {};  ///< of the arm, and where its numbers come from; empty where not said
   std::vector<Assumption> assumed = {};       ///< of these, what nobody publishes
   path::EndEffector end_effector = {};        ///< its mass in torques and modes too

@@ -27,8 +27,8 @@ struct LimitWords {
 constexpr LimitWords limit_words[] = {
     {ProgramLimit::stability, "stability margin", "", 1.0, true},
     {ProgramLimit::force, "peak force", "N", 1.0, false},
-    {ProgramLimit::torque, "torque", "N·m", 1.0, false},
-    {ProgramLimit::power, "power", "kW", units::kw, false},
+    {ProgramLimit::torque, "torque, mean of a revolution,", "N·m", 1.0, false},
+    {ProgramLimit::power, "sustained power", "kW", units::kw, false},
     {ProgramLimit::deflection, "deflection", "µm", units::um, false},
     {ProgramLimit::surface_error, "surface error", "µm", units::um, false},
     {ProgramLimit::greatest_chip, "chip thickness", "mm", units::mm, false},
@@ -70,14 +70,16 @@ Json outcome_json(const Outcome& outcome, const DecideResult& result, const Forc
   }
   return {
       {"cutting_time_s", number(outcome.cutting_time_s)},
+      {"robot_time_s", number(outcome.robot_time_s)},
       {"total_time_s", number(outcome.total_time_s)},
       {"lowest_spindle_speed_rpm", number(outcome.lowest_spindle_speed_rad_per_s / units::rpm)},
       {"highest_spindle_speed_rpm", number(outcome.highest_spindle_speed_rad_per_s / units::rpm)},
       {"unstable_blocks", outcome.unstable_blocks},
+      {"uncertain_blocks", outcome.uncertain_blocks},
       {"least_stability_margin", number(outcome.least_stability_margin)},
       {"peak_force_n", number(outcome.peak_force_n)},
-      {"peak_torque_n_m", number(outcome.peak_torque_n_m)},
-      {"peak_power_w", number(outcome.peak_power_w)},
+      {"revolution_torque_n_m", number(outcome.revolution_torque_n_m)},
+      {"sustained_power_w", number(outcome.sustained_power_w)},
       {"peak_deflection_um", number(outcome.peak_deflection_m / units::um)},
       {"worst_surface_error_um", number(outcome.worst_surface_error_m / units::um)},
       {"greatest_torque_share", outcome.greatest_torque_share > 0.0 ? number(outcome.greatest_torque_share) : Json()},
@@ -171,6 +173,11 @@ std::string limit_text(const decision::LimitUse& use) {
   const std::string unit = *words->unit == '\0' ? "" : std::string(" ") + words->unit;
   const bool both_sides = use.limit == ProgramLimit::cutting_speed || use.limit == ProgramLimit::spindle_range;
   const bool at_least = words->at_least || (both_sides && use.value < use.allowed);
+  if (!both_sides && (at_least ? use.value >= use.allowed : use.value <= use.allowed)) {
+    // What is predicted keeps the limit, but not with what is kept in reserve for the run through the material.
+    return fmt::format("{} {:.3g}{}; {} {:.3g}{} and a reserve", words->name, use.value / words->factor, unit,
+                       at_least ? "at least" : "at most", use.allowed / words->factor, unit);
+  }
   return fmt::format("{} {:.3g}{}; {} {:.3g}{}", words->name, use.value / words->factor, unit,
                      at_least ? "at least" : "at most", use.allowed / words->factor, unit);
 }
@@ -184,7 +191,7 @@ Json program_decision_json(const PlanResult& plan) {
               {"reason", result.reason},
               {"goal", name_in(goal_names, plan.job.decide.goal)},
               {"free", std::move(free)},
-              {"collisions_checked", result.collisions_checked},
+              {"collisions_checked", collisions_checked(plan)},
               {"evaluations", result.evaluations},
               {"exact_runs", result.exact_runs},
               {"seconds", number(result.seconds)},

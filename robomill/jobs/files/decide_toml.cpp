@@ -60,6 +60,7 @@ DecideOptions read_decide(io::TomlFile& file, bool along_program) {
     check_without_program(file, out);
     return out;
   }
+  out.speed_changes_given = file.has("decide.speed_changes");
   file.choice("decide.speed_changes", speed_change_names, out.speed_changes);
   file.number("decide.spindle_ramp_rpm_per_s", "spindle_ramp_rad_per_s2", units::rpm, out.spindle_ramp_rad_per_s2);
   file.number("decide.max_force_n", "max_force_n", 1.0, out.max_force_n);

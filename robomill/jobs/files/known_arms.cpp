@@ -1,10 +1,14 @@
 #include "robomill/jobs/files/known_arms.hpp"
 
 #include <array>
+#include <cctype>
 #include <cstddef>
+#include <utility>
 
 #include "robomill/base/embed.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/path/files/trajectory.hpp"
 
 // By their names.
 // clang-format off
@@ -47,6 +51,46 @@ const auto& embedded_cells() {
 }
 
 }  // namespace
+
+std::string maker_of(std::string_view name) {
+  // A maker's name, or a series that only one maker has, at the beginning of a word.
+  static constexpr std::array<std::pair<std::string_view, const char*>, 19> words = {
+      {{"kuka", path::maker_kuka},
+       {"lbr", path::maker_kuka},
+       {"kr", path::maker_kuka},
+       {"abb", path::maker_abb},
+       {"irb", path::maker_abb},
+       {"universal", path::maker_universal_robots},
+       {"ur", path::maker_universal_robots},
+       {"fanuc", "FANUC"},
+       {"crx", "FANUC"},
+       {"staubli", "Stäubli"},
+       {"stäubli", "Stäubli"},
+       {"yaskawa", "Yaskawa"},
+       {"motoman", "Yaskawa"},
+       {"gp", "Yaskawa"},
+       {"comau", "Comau"},
+       {"kawasaki", "Kawasaki"},
+       {"nachi", "Nachi"},
+       {"mitsubishi", "Mitsubishi"},
+       {"denso", "Denso"}}};
+  const std::string lower = io::lowered(std::string(name));
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  for (const auto& [word, maker] : words) {
+    for (std::size_t at = lower.find(word); at != std::string::npos; at = lower.find(word, at + 1)) {
+      const std::size_t end = at + word.size();
+      const bool begins = at == 0 || !letter(lower[at - 1]);
+      // A series is followed by its number; a name may end with anything that is no letter.
+      const bool series = word.size() <= 3 && word != "abb";
+      std::size_t next = end;
+      while (series && next < lower.size() && (lower[next] == ' ' || lower[next] == '-' || lower[next] == '_')) ++next;
+      const bool ends = series ? next < lower.size() && std::isdigit(static_cast<unsigned char>(lower[next])) != 0
+                               : end == lower.size() || !letter(lower[end]);
+      if (begins && ends) return maker;
+    }
+  }
+  return {};
+}
 
 std::vector<KnownArm> known_arms() {
   std::vector<KnownArm> arms;

@@ -15,6 +15,10 @@ struct KnownArm {
   std::string description = {};  ///< "KUKA KR 210 R2700 extra: 210 kg, 2.7 m"
 };
 
+/// The maker of an arm by its name, "kuka-kr210-r2700", "kuka_kr16_2", "irb4600", as path::TrajectoryInfo has it;
+/// empty: not known.
+[[nodiscard]] ROBOMILL_API std::string maker_of(std::string_view name);
+
 /// All of them, by their names.
 [[nodiscard]] ROBOMILL_API std::vector<KnownArm> known_arms();
 

@@ -87,6 +87,45 @@ io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& pris
   return json;
 }
 
+io::Json speeds_json(const ProgramRun& run) {
+  io::Json out = io::Json::array();
+  for (const double speed : run.spindle_speeds_rad_per_s) out.push_back(io::number(speed / units::rpm));
+  return out;
+}
+
+const char* status_text(robot::Clearance::Status status) {
+  using Status = robot::Clearance::Status;
+  switch (status) {
+    case Status::too_near:
+      return "too_near";
+    case Status::gouge:
+      return "gouge";
+    case Status::collision:
+      return "collision";
+    case Status::clear:
+      break;
+  }
+  return "clear";
+}
+
+io::Json clearance_json(const PathClearance& path) {
+  const robot::Clearance& at = path.clearance;
+  io::Json bodies = io::Json::array();
+  if (!at.first.empty()) bodies = {at.first, at.second};
+  return {{"status", status_text(at.status)},
+          {"bodies", std::move(bodies)},
+          {"least_distance_mm", at.first.empty() ? io::Json() : io::number(at.distance_m / units::mm)},
+          {"depth_mm", io::number(at.depth_m / units::mm)},
+          {"clearance_mm", io::number(path.required_m / units::mm)},
+          {"looked_within_mm", io::number(path.reach_m / units::mm)},
+          {"block", path.block + 1},
+          {"line", path.line > 0 ? io::Json(path.line) : io::Json()},
+          {"at_s", io::number(path.time_s)},
+          {"positions", path.looks},
+          {"most_between_mm", io::number(path.between_m / units::mm)},
+          {"text", clearance_text(path)}};
+}
+
 io::Json run_json(const ProgramRun& run) {
   return {{"points", run.points},
           {"shortest_step_ms", io::number(run.shortest_step_s / units::ms)},
@@ -98,6 +137,7 @@ io::Json run_json(const ProgramRun& run) {
           {"max_axis_error_deg", io::number(run.distances.axis_error_rad / units::deg)},
           {"limit_error_mm", io::number(run.tip_tolerance_m / units::mm)},
           {"limit_error_deg", io::number(run.axis_tolerance_rad / units::deg)},
+          {"spindle_speeds_rpm", speeds_json(run)},
           {"most_points", run.most_points > 0 ? io::Json(run.most_points) : io::Json()},
           {"holds", run.holds()}};
 }
@@ -121,6 +161,7 @@ io::Json smooth_object(const SmoothedProgram& smoothed) {
   }
   json["notes"] = smoothed.notes;
   json["assumed"] = io::assumed_json(smoothed.assumed);
+  json["collisions"] = smoothed.clearance ? clearance_json(*smoothed.clearance) : io::Json();
   json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : io::Json();
   if (smoothed.methods.size() > 1) {
     json["methods"] = io::Json::array();

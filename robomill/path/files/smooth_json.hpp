@@ -6,6 +6,7 @@
 
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/path/files/path_clearance.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/smooth.hpp"
@@ -31,6 +32,7 @@ struct SmoothedProgram {
   bool written = false;                          ///< whether there is a trajectory
   std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
   std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one
+  std::optional<PathClearance> clearance = {};   ///< of the first, by the cell's [geometry]; none: not checked
   std::vector<program::Skipped> skipped = {};
   std::vector<std::string> notes = {};
   std::vector<Assumption> assumed = {};

@@ -45,6 +45,8 @@ std::optional<ProgramRun> SampleFile::verify(program::Source& /*program*/, const
   return std::nullopt;
 }
 
+void SampleFile::state_collisions(const std::string& /*found*/) {}
+
 void require_regular(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);

@@ -1,10 +1,12 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
@@ -18,6 +20,9 @@
 
 namespace robomill::path {
 
+/// Makers of arms whose names are known, as messages spell them.
+inline constexpr const char *maker_kuka = "KUKA", *maker_abb = "ABB", *maker_universal_robots = "Universal Robots";
+
 /// What a trajectory's file holds beside its samples.
 struct ROBOMILL_API TrajectoryInfo {
   int joints = 0;                       ///< n, 1 to 6
@@ -28,6 +33,8 @@ struct ROBOMILL_API TrajectoryInfo {
                                         ///< or the sample period where that is longer
   std::string cell = {}, program = {};  ///< names of the files it comes from
   EndEffector end_effector = {};        ///< of joint programs
+  Eigen::Isometry3d workpiece = Eigen::Isometry3d::Identity();  ///< of joint programs: W in B
+  std::string maker = {};  ///< of the arm, such as maker_kuka; empty: not known. Of joint programs
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -50,10 +57,14 @@ struct ROBOMILL_API ProgramRun {
   double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
   bool fixed_cycle = false;     ///< a point a cycle: none can be added
   std::size_t most_points = 0;  ///< that such a controller loads; 0: not known
+  /// That the NC program asks for while the spindle turns, as they come, each once. The joint program only switches the
+  /// spindle on: it carries out one at most.
+  std::vector<double> spindle_speeds_rad_per_s = {};
   /// Whether deviations and errors are within the tolerances: each <= tolerance · (1 + 1e-6).
   [[nodiscard]] bool keeps_tolerances() const;
   [[nodiscard]] bool too_long() const { return most_points > 0 && points > most_points; }
-  [[nodiscard]] bool holds() const { return keeps_tolerances() && !too_long(); }
+  [[nodiscard]] bool one_speed() const { return spindle_speeds_rad_per_s.size() <= 1; }
+  [[nodiscard]] bool holds() const { return keeps_tolerances() && !too_long() && one_speed(); }
 };
 
 /// Samples as a file, written as they come in memory that does not grow with them. The file appears by commit(), whole,
@@ -77,6 +88,9 @@ class ROBOMILL_API SampleFile {
   /// @throws InvalidInput what the program's reader throws; Interrupted
   virtual std::optional<ProgramRun> verify(program::Source& program, const robot::Kinematics& machine,
                                            const SmoothingOptions& options, bool refine, const Progress& progress);
+  /// Of files that have a header (.h5 and joint programs), before commit: what a check for collisions found, for it.
+  /// Without it the header says that nothing was checked.
+  virtual void state_collisions(const std::string& found);
   /// Ends the file and moves it to its place. @throws InvalidInput if that fails
   virtual void commit() = 0;
 };

@@ -70,7 +70,10 @@ class Hdf5 final : public SampleFile {
     }
   }
 
+  void state_collisions(const std::string& found) override { collisions_ = found; }
+
   void commit() override {
+    text(file_.get(), "collisions", collisions_);
     flush();
     close();
     require(file_.reset());
@@ -78,6 +81,8 @@ class Hdf5 final : public SampleFile {
   }
 
  private:
+  std::string collisions_ = unchecked_collisions;
+
   void require(bool good) const {
     if (!good) throw InvalidInput(path_.string(), "cannot be written", "Is there room on the disk?");
   }

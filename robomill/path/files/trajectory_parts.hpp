@@ -11,6 +11,9 @@
 
 namespace robomill::path {
 
+/// What a header says of collisions where nobody looked.
+inline constexpr const char* unchecked_collisions = "not checked: the cell has no [geometry]";
+
 /// A long text that appears whole or not at all, written through a buffer.
 class PendingText {
  public:

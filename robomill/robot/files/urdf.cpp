@@ -348,7 +348,9 @@ class Chain {
 
 UrdfArm parse_urdf(std::string_view content, const std::string& where, const UrdfReading& reading) {
   const urdf::ModelInterfaceSharedPtr model = parse(content, where);
-  return Chain(*model, where, reading).read();
+  UrdfArm out = Chain(*model, where, reading).read();
+  out.name = model->getName();
+  return out;
 }
 
 UrdfArm read_urdf(const std::filesystem::path& path, const UrdfReading& reading) {

@@ -17,6 +17,7 @@ struct UrdfReading {
 
 struct UrdfArm {
   Arm arm = {};
+  std::string name = {};                ///< of the robot
   std::vector<std::string> notes = {};  ///< sentences for the user
 };
 

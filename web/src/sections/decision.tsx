@@ -4,7 +4,7 @@ import {
   allowedText,
   beyondText,
   collisionCaution,
-  cuttingTimeText,
+  decidedTime,
   decisionFacts,
   feedText,
   leanText,
@@ -14,6 +14,7 @@ import {
   rangeText,
   savedText,
   speedText,
+  timeText as shownTime,
   unknown,
   valueText,
   violationOf,
@@ -33,9 +34,10 @@ function keyFigure(label: string, value: string, unit: string, note = ''): KeyFi
 
 function cardFigures(decision: Decision, decided: Outcome): KeyFigure[] {
   const { as_programmed: before, stretches } = decision;
+  const shown = decidedTime(before, decided);
   return [
     keyFigure('Spindle speed', speedText(decided), 'rpm', speedText(decided).includes('–') ? `in ${stretches.length} stretches` : ''),
-    keyFigure('Cutting time', cuttingTimeText(decided), 's', savedText(before.cutting_time_s, decided.cutting_time_s)),
+    keyFigure(shown.label, shownTime(shown.decided), 's', savedText(shown.before, shown.decided)),
     keyFigure('Feed', feedText(decision), 'mm/min'),
     ...limited.map((measure): KeyFigure => {
       const violation = violationOf(decided, measure);
@@ -130,7 +132,7 @@ const stretchColumns: Column<Stretch>[] = [
   { heading: 'Spindle speed (rpm)', number: true, cell: (row) => fixed(row.spindle_speed_rpm, 0) },
   { heading: 'Feed (mm/min)', number: true, cell: (row) => rangeText(row.lowest_feed_mm_per_min, row.highest_feed_mm_per_min, significant) },
   { heading: 'Lead, tilt', number: true, optional: true, cell: leanText },
-  { heading: 'Cutting time (s)', number: true, cell: (row) => fixed(row.cutting_time_s, 1) },
+  { heading: 'Cutting time at the feeds (s)', number: true, cell: (row) => fixed(row.cutting_time_s, 1) },
   { heading: 'Limited by', long: true, cell: ({ limited_by: text }) => <LinkedText text={text} /> },
 ];
 
@@ -180,7 +182,7 @@ function OtherSpeeds({ speeds, several }: { speeds: OtherSpeed[]; several: boole
       columns={[
         { heading: 'Spindle speed (rpm)', number: true, cell: (row) => fixed(row.spindle_speed_rpm, 0) },
         { heading: 'Stretch', number: true, optional: true, cell: ({ stretch }) => fixed(several ? (stretch ?? null) : null, 0) },
-        { heading: several ? 'Its cutting time (s)' : 'Cutting time (s)', number: true, cell: timeText },
+        { heading: several ? 'Its cutting time at the feeds (s)' : 'Cutting time at the feeds (s)', number: true, cell: timeText },
         { heading: 'Why not', long: true, cell: stopped },
       ]}
     />

@@ -1,5 +1,7 @@
 #include "robomill/path/files/robot_programs/joint_dialects.hpp"
 
+#include <cmath>
+
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
 
@@ -41,6 +43,16 @@ void JointDialect::add_missing_outputs(const EndEffector& end, const Outputs& wa
 void JointDialect::add_assumed_load(const EndEffector& end, std::vector<std::string>& lines) {
   lines.push_back(fmt::format("ASSUMED of the load of {:.6g} kg: {}no moments of inertia", *end.mass_kg,
                               end.center_m ? "" : "its centre half-way to the tip (tool.center_mm), "));
+}
+
+std::string JointDialect::euler_pose(const Eigen::Isometry3d& frame) {
+  const Eigen::Matrix3d r = frame.linear();
+  const double b = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
+  const bool upright = std::hypot(r(0, 0), r(1, 0)) < 1e-9;  // A and C turn about one axis: all of it is given to A
+  const double a = upright ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
+  const double c = upright ? 0.0 : std::atan2(r(2, 1), r(2, 2));
+  return three(frame.translation(), units::mm, "X {:.3f},Y {:.3f},Z {:.3f},") +
+         three({a, b, c}, units::deg, "A {:.4f},B {:.4f},C {:.4f}");
 }
 
 std::string JointDialect::three(const Eigen::Vector3d& value, double unit, const char* form) {

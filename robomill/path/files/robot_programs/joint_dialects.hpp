@@ -40,6 +40,8 @@ class JointDialect {
   [[nodiscard]] virtual bool fixed_cycle() const = 0;
   /// That its controllers are known to load; 0: not known.
   [[nodiscard]] virtual std::size_t most_points() const = 0;
+  /// A pose as the controller's pendant shows it.
+  [[nodiscard]] virtual std::string pose(const Eigen::Isometry3d& frame) const = 0;
   /// Before the header's comments.
   virtual void open(fmt::memory_buffer& out) = 0;
   /// What the cell does not give, so that the program leaves it to the user or assumes it: tool and load first.
@@ -78,6 +80,8 @@ class JointDialect {
                                          const char* form = "{:.6g},{:.6g},{:.6g}");
   /// Lines about outputs that the cell does not name.
   static void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vector<std::string>& lines);
+  /// "X 1,Y 2,Z 3,A 4,B 5,C 6": mm and degrees, turned about z, the new y and the new x.
+  [[nodiscard]] static std::string euler_pose(const Eigen::Isometry3d& frame);
   /// What the file gives the controller for the load although nobody measured it.
   static void add_assumed_load(const EndEffector& end, std::vector<std::string>& lines);
 };

@@ -115,6 +115,32 @@ void require_outputs(const TrajectoryInfo& info, JointLanguage language) {
   require("spindle.coolant_output", info.end_effector.coolant);
 }
 
+/// Whose controllers run the language, and the endings of what they run.
+struct Controller {
+  const char* maker;
+  const char* endings;
+};
+constexpr Controller controllers[] = {
+    {maker_kuka, ".src"}, {maker_abb, ".mod"}, {maker_universal_robots, ".script or .servoj"}};
+
+const Controller& controller_of(JointLanguage language) {
+  if (language == JointLanguage::krl) return controllers[0];
+  return language == JointLanguage::rapid ? controllers[1] : controllers[2];
+}
+
+/// An arm's joints mean nothing to another maker's controller.
+void require_maker(const std::filesystem::path& path, const TrajectoryInfo& info, JointLanguage language) {
+  const Controller& wanted = controller_of(language);
+  if (info.maker.empty() || info.maker == wanted.maker) return;
+  const auto* own = std::ranges::find_if(controllers, [&](const Controller& c) { return info.maker == c.maker; });
+  throw InvalidInput(path.string(),
+                     fmt::format("is a program for {}'s controllers; the arm of {} is of {}", wanted.maker,
+                                 info.cell.empty() ? "the cell" : info.cell, info.maker),
+                     own != std::end(controllers)
+                         ? fmt::format("Write {}, or the trajectory as .csv", own->endings)
+                         : "No program is written for that controller; write the trajectory as .csv or .h5");
+}
+
 /// Samples from point to point.
 std::size_t stride_of(const TrajectoryInfo& info, JointLanguage language) {
   const bool servo = language == JointLanguage::urscript || language == JointLanguage::servoj;
@@ -163,6 +189,7 @@ std::vector<std::string> reported(const std::optional<ProgramRun>& run, double p
 /// What the program commands beside motion.
 struct Operation {
   Outputs outputs = {};
+  std::vector<double> speeds_rad_per_s = {};  // ProgramRun::spindle_speeds_rad_per_s
   std::vector<std::string> reported = {};
 };
 
@@ -200,6 +227,9 @@ Operation operation_of(program::Source& program) {
     const bool spindle_changes =
         block.spindle != last.spindle ||
         (turns(block.spindle) && block.spindle_speed_rad_per_s != last.spindle_speed_rad_per_s);
+    if (turns(block.spindle) && std::ranges::count(out.speeds_rad_per_s, block.spindle_speed_rad_per_s) == 0) {
+      out.speeds_rad_per_s.push_back(block.spindle_speed_rad_per_s);
+    }
     if (!out.outputs.spindle && turns(block.spindle)) {
       out.outputs.spindle = true;
       out.reported.push_back(
@@ -268,9 +298,12 @@ class JointProgram final : public SampleFile {
     }
     if (dialect_->fixed_cycle()) place_points(stride_);
     measure_steps(run);
+    run.spindle_speeds_rad_per_s = operation_.speeds_rad_per_s;
     run_ = run;
     return run;
   }
+
+  void state_collisions(const std::string& found) override { collisions_ = found; }
 
   void commit() override {
     if (points_.at.empty()) place_points(stride_);
@@ -340,6 +373,11 @@ class JointProgram final : public SampleFile {
     for (const std::string& line : dialect_->not_set(operation_.outputs)) comment(line);
     for (const std::string& line : operation_.reported) comment(line);
     comment(fmt::format("cell {}, program {}", one_line(info_.cell), one_line(info_.program)));
+    comment(fmt::format("tool (tip in the flange frame): {}", dialect_->pose(info_.end_effector.tip)));
+    comment(load_text());
+    comment(fmt::format("base (the program's frame in the robot's base frame): {}", dialect_->pose(info_.workpiece)));
+    comment("These joints were computed with tool and base: compare them with the pendant's before the first run.");
+    comment("collisions: " + one_line(collisions_));
     comment(fmt::format("duration {:.6f} s", period_s(points_.at.back())));
     for (const std::string& line : reported(run_, period_s(stride_))) comment(line);
     std::string advice = dialect_->advice();
@@ -348,6 +386,15 @@ class JointProgram final : public SampleFile {
       comment(advice.substr(from, to - from));
       from = to + 1;
     }
+  }
+
+  [[nodiscard]] std::string load_text() const {
+    const EndEffector& end = info_.end_effector;
+    if (!end.mass_kg) return "load: not given by the cell (tool.mass_kg)";
+    const Eigen::Vector3d center_mm = end.center() / units::mm + Eigen::Vector3d::Zero();
+    return fmt::format("load: {:.6g} kg, centre of mass in the flange frame X {:.3f} Y {:.3f} Z {:.3f} mm{}",
+                       *end.mass_kg, center_mm.x(), center_mm.y(), center_mm.z(),
+                       end.center_m ? "" : ", assumed half-way to the tip");
   }
 
   /// Steps in which the robot stands still become a wait.
@@ -385,6 +432,7 @@ class JointProgram final : public SampleFile {
   SampleSpool samples_;
   JointPoints points_;
   Operation operation_;
+  std::string collisions_ = unchecked_collisions;
   std::optional<ProgramRun> run_;
 };
 
@@ -396,6 +444,7 @@ std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path
     throw InvalidInput(path.string(), "is a program of an arm with six revolute joints; this machine is none",
                        "Write .csv or .h5");
   }
+  require_maker(path, info, language);
   require_outputs(info, language);
   return std::make_unique<JointProgram>(path, info, language);
 }

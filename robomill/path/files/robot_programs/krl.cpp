@@ -20,6 +20,9 @@ class Krl final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
   [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
+  [[nodiscard]] std::string pose(const Eigen::Isometry3d& frame) const override {
+    return '{' + euler_pose(frame) + '}';
+  }
   void open(fmt::memory_buffer& out) override { io::append(out, "&ACCESS RVP\n&REL 1\nDEF {}()\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;

@@ -22,6 +22,11 @@ class Rapid final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
   [[nodiscard]] std::size_t most_points() const override { return 0; }
+  [[nodiscard]] std::string pose(const Eigen::Isometry3d& frame) const override {
+    const Eigen::Quaterniond turn(frame.linear());
+    return fmt::format("[[{}],[{:.6f},{:.6f},{:.6f},{:.6f}]]", three(frame.translation(), units::mm), turn.w(),
+                       turn.x(), turn.y(), turn.z());
+  }
   void open(fmt::memory_buffer& out) override { io::append(out, "MODULE {}\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;

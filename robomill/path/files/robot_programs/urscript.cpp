@@ -23,6 +23,15 @@ robot::Position6 held_radians(const robot::Position6& joints) {
   return (joints * radian_digits).array().round() / radian_digits;
 }
 
+/// "p[x,y,z,rx,ry,rz]": m and the turn's axis times its angle in rad.
+std::string vector_pose(const Eigen::Isometry3d& frame) {
+  const Eigen::AngleAxisd angle_axis(frame.linear());
+  const Eigen::Vector3d at_m = frame.translation() + Eigen::Vector3d::Zero();
+  const Eigen::Vector3d turn = angle_axis.angle() * angle_axis.axis() + Eigen::Vector3d::Zero();
+  return fmt::format("p[{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}]", at_m.x(), at_m.y(), at_m.z(), turn.x(), turn.y(),
+                     turn.z());
+}
+
 class UrScript final : public JointDialect {
  public:
   UrScript(std::string name, const EndEffector& end, double period_s)
@@ -32,6 +41,7 @@ class UrScript final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_radians; }
   [[nodiscard]] bool fixed_cycle() const override { return true; }
   [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
+  [[nodiscard]] std::string pose(const Eigen::Isometry3d& frame) const override { return vector_pose(frame); }
   void open(fmt::memory_buffer& out) override { io::append(out, "def {}():\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
@@ -101,6 +111,7 @@ class Servoj final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_radians; }
   [[nodiscard]] bool fixed_cycle() const override { return true; }
   [[nodiscard]] std::size_t most_points() const override { return 0; }
+  [[nodiscard]] std::string pose(const Eigen::Isometry3d& frame) const override { return vector_pose(frame); }
   void open(fmt::memory_buffer&) override {}
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines = {
