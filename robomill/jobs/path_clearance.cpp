@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "robomill/base/parallel.hpp"
@@ -96,6 +97,20 @@ void PathLooks::thin() {
   looks_ = std::move(kept);
 }
 
+double PathLooks::between(const path::Sample& from, const path::Sample& to, double way_m) {
+  if (!(way_m > step_m_)) return way_m;
+  // Samples that are farther apart than a step: the joints run evenly from one to the other.
+  if (since_m_ > 0.0) keep(from, since_m_, false);
+  const double pieces = std::ceil(way_m / step_m_);
+  path::Sample at = to;
+  for (double k = 1.0; k < pieces; ++k) {
+    at.joints = from.joints + k / pieces * (to.joints - from.joints);
+    at.time_s = from.time_s + k / pieces * (to.time_s - from.time_s);
+    keep(at, way_m / pieces, false);
+  }
+  return way_m / pieces;
+}
+
 void PathLooks::add(std::span<const path::Sample> samples) {
   for (const path::Sample& sample : samples) {
     if (!last_) {
@@ -104,7 +119,7 @@ void PathLooks::add(std::span<const path::Sample> samples) {
       const double way_m = checker_->longest_way_m(last_->joints.head(joints_), sample.joints.head(joints_));
       const bool ends_block = sample.block != last_->block;
       if (since_m_ > 0.0 && (ends_block || since_m_ + way_m > step_m_)) keep(*last_, since_m_, ends_block);
-      since_m_ += way_m;
+      since_m_ += between(*last_, sample, way_m);
     }
     last_ = sample;
   }

@@ -52,6 +52,8 @@ class ROBOMILL_API PathLooks {
     bool ends_block = false;
   };
   void keep(const path::Sample& sample, double way_m, bool ends_block);
+  /// Looks between two samples. @return the way from the last of them to the second sample
+  double between(const path::Sample& from, const path::Sample& to, double way_m);
   void thin();
 
   const robot::CollisionChecker* checker_;
