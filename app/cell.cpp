@@ -6,6 +6,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/cell_check.hpp"
 #include "robomill/jobs/pages.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 /// Runs the job; what it rejects of the command line is reported by the option's name.
 jobs::CellCheck check_cell(const CellCheckCommand& command, Progress& progress) {
   jobs::CellFile cell = jobs::read_cell(command.cell, jobs::Robots::any);
+  if (!command.posture_deg.empty()) jobs::ask_for_posture(cell, command.posture_deg);
   jobs::CellCheckJob job{.cell = command.cell, .joints = command.joints, .program = command.program};
   for (double& value : job.joints) value *= cell.hybrid ? units::mm : units::deg;  // all of its joints slide
   try {

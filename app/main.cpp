@@ -103,6 +103,15 @@ CommandLine::CommandLine() {
   add_footers(parser, {});
 }
 
+/// Where an arm begins a program, of every verb that puts one on a robot.
+CLI::Option* add_posture(CLI::App* sub, std::vector<double>& posture_deg) {
+  return sub
+      ->add_option("--posture", posture_deg,
+                   "begin the program as near to q1,q2,… as it goes through, in degrees (default: as at home)")
+      ->delimiter(',')
+      ->check(number());
+}
+
 /// Files to begin with.
 void CommandLine::add_first_verbs() {
   CLI::App* sub = verb("init", "a commented file to begin with, that runs as it is",
@@ -211,8 +220,10 @@ void CommandLine::add_cut_verbs() {
   sub = verb("forces", "a cutter in its cut, or along a program, to cutting forces",
              [this](Progress& p) { return run(forces, common, p); });
   sub->add_option("forces", forces.input, "forces.toml")->required();
-  sub->add_option("--program", forces.program, "an NC program: a row a block in place of one revolution");
+  CLI::Option* along =
+      sub->add_option("--program", forces.program, "an NC program: a row a block in place of one revolution");
   sub->add_option("--cell", forces.cell, "cell.toml: the robot that the cut bends");
+  add_posture(sub, forces.posture_deg)->needs(along);
 
   sub = verb("coefficients", "average forces of slots to cutting force coefficients",
              [this](Progress& p) { return run(coefficients, common, p); });
@@ -242,7 +253,9 @@ void CommandLine::add_robot_verbs() {
   sub->add_option("--joints", cell_check.joints, "show this position too: q1,q2,… in degrees (mm where joints slide)")
       ->delimiter(',')
       ->check(number());
-  sub->add_option("--program", cell_check.program, "an NC program that the tool must follow there");
+  CLI::Option* along =
+      sub->add_option("--program", cell_check.program, "an NC program that the tool must follow there");
+  add_posture(sub, cell_check.posture_deg)->needs(along);
 
   sub = verb("smooth", "an NC program to a joint trajectory within every limit of the robot",
              [this](Progress& p) { return run(smooth, common, p); });
@@ -250,6 +263,7 @@ void CommandLine::add_robot_verbs() {
   sub->add_option("--cell", smooth.cell, "cell.toml: the robot, its joints' limits, [smoothing]")->required();
   sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
       ->check(one_of_words(path::method_names));
+  add_posture(sub, smooth.posture_deg);
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
   sub->add_flag("--keep-violations,--keep-breaches", smooth.keep_violations,
                 "write the trajectory even where it violates a limit");
@@ -285,6 +299,7 @@ void CommandLine::add_machine_verbs() {
              [this](Progress& p) { return run(plan, common, p); });
   sub->add_option("job", plan.job, "job.toml")->required();
   sub->add_flag("--accept-fit", plan.accept_fit, "go on with modes whose relative error is 20 % or more");
+  add_posture(sub, plan.posture_deg);
 
   sub = verb("serve", "the page of a folder, over HTTP", [this](Progress& p) { return run(serve, common, p); });
   sub->remove_option(sub->get_option("--report"));

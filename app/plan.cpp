@@ -12,7 +12,8 @@ namespace robomill::app {
 
 Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
   const std::filesystem::path folder = common.to_stdout() ? std::string() : common.output;
-  const jobs::PlanResult result = jobs::run_job(command.job, common.seed, progress, folder, command.accept_fit);
+  const jobs::PlanResult result =
+      jobs::run_job(command.job, common.seed, progress, folder, command.accept_fit, command.posture_deg);
   if (common.to_stdout()) {
     fmt::print("{}", jobs::plan_json(result));
   } else if (!common.output.empty()) {

@@ -32,6 +32,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   if (!common.to_stdout()) job.output = common.output;
   if (command.method) job.method = value_in(path::method_names, *command.method);
   job.compare = command.compare;
+  job.near_deg = command.posture_deg;
   job.keep_violations = command.keep_violations;
   job.record = is_html(common.report);
   if (command.program_period_ms) {

@@ -88,8 +88,9 @@ struct SimulateCommand {
 };
 struct ForcesCommand {
   std::filesystem::path input;
-  std::filesystem::path program;  ///< empty: one revolution
-  std::filesystem::path cell;     ///< empty: the one that the input names, if any
+  std::filesystem::path program;    ///< empty: one revolution
+  std::filesystem::path cell;       ///< empty: the one that the input names, if any
+  std::vector<double> posture_deg;  ///< where the arm begins along a program; empty: the cell's
 };
 struct CoefficientsCommand {
   std::filesystem::path slots;
@@ -101,13 +102,15 @@ struct StiffnessCommand {
 };
 struct CellCheckCommand {
   std::filesystem::path cell;
-  std::vector<double> joints;     ///< one more position: degrees, or millimetres where joints slide
-  std::filesystem::path program;  ///< empty: the workpiece's origin
+  std::vector<double> joints;       ///< one more position: degrees, or millimetres where joints slide
+  std::filesystem::path program;    ///< empty: the workpiece's origin
+  std::vector<double> posture_deg;  ///< where the arm begins along a program; empty: the cell's
 };
 struct SmoothCommand {
   std::filesystem::path program, cell;
   std::optional<std::string> method;        ///< the cell's unless given
   bool compare = false;                     ///< the other methods beside it
+  std::vector<double> posture_deg;          ///< where the arm begins; empty: the cell's
   bool keep_violations = false;             ///< write a trajectory that breaks limits
   std::optional<double> program_period_ms;  ///< of joint programs; not given: the language's
 };
@@ -126,7 +129,8 @@ struct CalibrateCommand {
 };
 struct PlanCommand {
   std::filesystem::path job;
-  bool accept_fit = false;  ///< go on with modes that do not describe the FRFs
+  bool accept_fit = false;          ///< go on with modes that do not describe the FRFs
+  std::vector<double> posture_deg;  ///< where the arm begins along a program; empty: the cell's
 };
 struct ServeCommand {
   serve::ServeOptions options;

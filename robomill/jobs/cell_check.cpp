@@ -14,6 +14,7 @@
 #include "robomill/jobs/cell_check/placement.hpp"
 #include "robomill/jobs/cell_check/shown.hpp"
 #include "robomill/jobs/cell_check/tool_places.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 #include "robomill/program/files/program_files.hpp"
 
@@ -51,17 +52,6 @@ CellStand stand_at(const CellFile& cell, const robot::Kinematics& machine, std::
   }
   out.nearest_joint = path::limit_share(machine, position).joint;
   out.condition_number = 1.0 / machine.regularity(position);
-  return out;
-}
-
-/// Where the cell says that the machine begins; else joints at 0, or in the middle of limits that 0 is not within.
-robot::Position6 home_of(const CellFile& cell, const robot::Kinematics& machine) {
-  if (!cell.home.empty()) return position_of(cell.home);
-  robot::Position6 out = robot::Position6::Zero();
-  for (int i = 0; i < machine.joints(); ++i) {
-    const double low = machine.limits().min_position(i), high = machine.limits().max_position(i);
-    if (low > 0.0 || high < 0.0) out(i) = high - low < 1e3 ? 0.5 * (low + high) : std::clamp(0.0, low, high);
-  }
   return out;
 }
 
@@ -165,6 +155,9 @@ CellCheck run_cell_check(const CellCheckJob& job, CellFile read, Progress& progr
   }
   out.drawing = draw_cell(out, targets.head);
   note_what_is_open(targets, out, progress);
+  if (program && out.placement.works()) {
+    for (std::string& note : posture_notes(out.placement.choice)) out.notes.push_back(std::move(note));
+  }
   return out;
 }
 

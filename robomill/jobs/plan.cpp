@@ -14,6 +14,7 @@
 #include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
 #include "robomill/jobs/plan_lobes.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -181,7 +182,9 @@ std::optional<decision::SpindleCapacity> capacity_along(const ForcesResult& forc
 /// The job's cell, for forces or for what smooths its program; only serial arms have forces.
 std::optional<CellFile> cell_of(const Job& job) {
   if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
-  return read_cell(job.cell, job.forces.empty() ? Robots::any : Robots::serial);
+  CellFile cell = read_cell(job.cell, job.forces.empty() ? Robots::any : Robots::serial);
+  if (!job.near_deg.empty()) ask_for_posture(cell, job.near_deg);
+  return cell;
 }
 
 /// Whether the job's program is to be smoothed.
@@ -312,10 +315,11 @@ void read_cut(PlanResult& result) {
 }  // namespace
 
 PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
-                   const std::filesystem::path& folder, bool accept_fit) {
+                   const std::filesystem::path& folder, bool accept_fit, const std::vector<double>& near_deg) {
   PlanResult result;
   result.job = read_job(job);
   append_warnings(result.job.notes, result.warnings);
+  result.job.near_deg = near_deg;
   // Everything that is quick to reject is read before the long work starts.
   if (result.recommends()) read_cut(result);
   const std::optional<CellFile> cell = cell_of(result.job);

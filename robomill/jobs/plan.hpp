@@ -92,10 +92,13 @@ struct PlanResult {
 ///     Empty: none is written
 /// @param accept_fit  go on with modes that do not describe the FRFs (modal::FitResult::usable); else the result ends
 ///     with the fit, and the recommendation says why
+/// @param near_deg  joints of the cell's arm that a program begins near, in place of robot.start_joints_deg; empty:
+/// that
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] ROBOMILL_API PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
                                               Progress& progress = Progress::none(),
-                                              const std::filesystem::path& folder = {}, bool accept_fit = false);
+                                              const std::filesystem::path& folder = {}, bool accept_fit = false,
+                                              const std::vector<double>& near_deg = {});
 
 /// The structure of a job as run_job() finds it: its FRFs, their fit and the modes, with warnings and what is assumed.
 /// @throws InvalidInput as run_job(), and where the modes do not describe the FRFs; Interrupted

@@ -310,7 +310,13 @@ std::vector<robot::Position6> joints_along(const CellFile& file, const program::
   if (!inverse) return joints_near(file, program, flanges, path);
   std::optional<robot::Position6> start;
   if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
-  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
+  const robot::ChooseOptions options = {.point_m = robot::tip_point(cell)};
+  if (!start && file.home.size() == 6) {
+    const robot::Position6 home(file.home.data());
+    robot::Followed way = robot::follow(cell.arm, *inverse, flanges, home, options);
+    if (way.status == robot::Reach::Status::found) return std::move(way.position_rad);
+  }
+  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, options);
   if (way.status != robot::Reach::Status::found) {
     throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
   }

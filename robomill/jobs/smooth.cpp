@@ -18,6 +18,7 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/path_clearance.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/path/files/trajectory.hpp"
@@ -55,17 +56,8 @@ std::array<bool, 6> prismatic_of(const CellFile& cell) {
 }
 
 path::PostureChoice posture_of(const Bench& bench) {
-  path::PostureOptions options;
-  if (bench.cell.gamma_given) options.gamma_rad = bench.cell.redundant_gamma_rad;
+  path::PostureOptions options = posture_options(bench.cell, *bench.machine);
   options.free_gamma = bench.smoothing.free_gamma;
-  const std::vector<double>& start = bench.cell.start_joints;
-  if (!start.empty()) {
-    robot::Position6 joints = robot::Position6::Zero();
-    for (std::size_t i = 0; i < std::min<std::size_t>(start.size(), 6); ++i) {
-      joints[static_cast<Eigen::Index>(i)] = start[i];
-    }
-    options.start = joints;
-  }
   return path::choose_posture(*bench.program, *bench.machine, options);
 }
 
@@ -337,6 +329,11 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   smoothed.skipped = bench.program->skipped();
   std::vector<std::string>& notes = smoothed.notes;
   notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
+  if (!job.posture) {
+    smoothed.posture = bench.posture;
+    const std::vector<std::string> remarks = posture_notes(bench.posture);
+    notes.insert(notes.end(), remarks.begin(), remarks.end());
+  }
   const std::vector<std::string> corrected = bench.program->notes();
   notes.insert(notes.end(), corrected.begin(), corrected.end());
   add_assumed(smoothed.assumed, assumed_of(bench, smoothed.robot_program.has_value()));
@@ -384,7 +381,9 @@ Assumption unchecked_collisions(const CellFile& cell) {
 }
 
 SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
-  return run_smooth(job, read_cell(job.cell, Robots::any), progress);
+  CellFile cell = read_cell(job.cell, Robots::any);
+  if (!job.near_deg.empty()) ask_for_posture(cell, job.near_deg);
+  return run_smooth(job, std::move(cell), progress);
 }
 
 SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress) {

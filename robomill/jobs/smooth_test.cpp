@@ -381,5 +381,54 @@ TEST_F(PlanPath, NeedsTheCellToSaySo) {
   EXPECT_NE(rejection([&] { static_cast<void>(run_job(file, 1)); }).find("has no [smoothing]"), std::string::npos);
 }
 
+/// A KUKA before a part that faces upwards, its spindle tilted against the flange.
+std::string kuka() {
+  return R"([robot]
+model = "kuka-kr210-r2700"
+[workpiece]
+origin_mm = [1700, 150, 800]
+[tool]
+mount_origin_mm = [60, 0, 160]
+mount_rotation_deg = [0, 40, 0]
+length_mm = 240
+[program]
+machine = "xyzac-trt"
+[smoothing]
+tip_tolerance_mm = 0.05
+axis_tolerance_deg = 0.1
+max_velocity_mm_per_s = 80
+max_acceleration_mm_per_s2 = 500
+max_jerk_mm_per_s3 = 10000
+max_angular_velocity_deg_per_s = 60
+max_angular_acceleration_deg_per_s2 = 600
+max_angular_jerk_deg_per_s3 = 12000
+)";
+}
+
+TEST(SmoothJob, BeginsAsAtHomeAndWhereAskedTo) {
+  const robomill::test::Folder folder;
+  const SmoothJob job = {.program = folder.file("p.ngc", "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X9 F600\n"),
+                         .cell = folder.file("cell.toml", kuka()),
+                         .record = false};
+  const SmoothResult as_at_home = run_smooth(job);
+  const path::Resemblance& like = *as_at_home.posture.resemblance;
+  EXPECT_TRUE(like.known && like.shoulder && like.elbow && like.wrist);
+  EXPECT_EQ(like.turns, 0);
+  const nlohmann::json json = nlohmann::json::parse(path::smooth_json(as_at_home.smoothed));
+  EXPECT_EQ(json["posture"]["joints"].size(), 6U);
+  EXPECT_EQ(json["posture"]["whole_turns_from_home"], 0);
+  // Half a turn of joint 4 with the wrist bent the other way, a whole turn of joint 6: the same pose.
+  SmoothJob other = job;
+  const robot::Position6 home = as_at_home.posture.posture.start / units::deg;
+  other.near_deg = {home(0),  home(1),
+                    home(2),  home(3) + (home(3) > 0.0 ? -180.0 : 180.0),
+                    -home(4), home(5) + (home(5) > 0.0 ? -180.0 : 180.0)};
+  const robot::Position6 there = run_smooth(other).posture.posture.start / units::deg;
+  for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(there(i), other.near_deg[static_cast<std::size_t>(i)], 1e-6) << i;
+  other.near_deg.pop_back();
+  EXPECT_NE(rejection([&] { (void)run_smooth(other); }).find("--posture: must hold one angle a joint, 6; it holds 5"),
+            std::string::npos);
+}
+
 }  // namespace smooth_test
 }  // namespace robomill::jobs

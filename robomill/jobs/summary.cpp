@@ -15,6 +15,7 @@
 #include "robomill/io/append.hpp"
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/summary_parts.hpp"
 
@@ -312,7 +313,13 @@ std::string summary(const SmoothResult& result) {
   if (run.lower_bound_s > 0.0) append(out, " (bound {:.3f} s)", run.lower_bound_s);
   append(out, " for {} blocks; {} samples; planned in {:.3g} s", run.blocks, run.samples, run.plan_s);
   if (run.rounds > 1) append(out, ", {} rounds", run.rounds);
-  append(out, "\n\n");
+  append(out, "\n");
+  if (result.smoothed.posture) {
+    append(
+        out, "starts at {}\n",
+        posture_text(*result.smoothed.posture, static_cast<int>(run.check.joints.size()), result.smoothed.prismatic));
+  }
+  append(out, "\n");
   add_check(out, by);
   if (result.smoothed.methods.size() > 1) add_methods(out, result.smoothed);
   if (result.smoothed.robot_program) add_run(out, *result.smoothed.robot_program);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::path {
@@ -20,11 +21,18 @@ constexpr int most_start_branches = 256;
 constexpr std::size_t first_places = 24, second_places = 400, second_candidates = 48;
 constexpr WalkOptions roughly{.halvings = 6, .max_step = 0.5, .careful = false};
 constexpr WalkOptions exactly{};
+/// A margin that is worth no other configuration than home's; for some 6° of a wrist from its singularity.
+constexpr double ample_margin = 0.05;
+/// Nearer than this to where two ways meet a position is singular for who reads of it.
+constexpr double near_angle = 5.0 * units::deg, near_length_m = 0.05;
+/// Home itself is then between two ways.
+constexpr double between_angle = 0.1 * units::deg, between_length_m = 1e-3;
 
 struct Candidate {
   double gamma_rad = 0.0;
   robot::Position6 start = robot::Position6::Zero();
   Walk walk = {};
+  Resemblance like = {};  ///< to home; of whom none is given, all alike
 };
 
 bool found(const Walk& walk) {
@@ -35,6 +43,14 @@ bool found(const Walk& walk) {
 bool better(const Candidate& a, const Candidate& b) {
   if (found(a.walk) != found(b.walk)) return found(a.walk);
   return found(a.walk) ? a.walk.margin.least > b.walk.margin.least : a.walk.t > b.walk.t;
+}
+
+/// What comes before all nearness: shoulder, elbow and wrist, in this order, and then whole turns.
+int rank(const Candidate& candidate) {
+  constexpr int turns_at_most = 100;
+  const Resemblance& like = candidate.like;
+  const int other = (like.shoulder ? 0 : 4) + (like.elbow ? 0 : 2) + (like.wrist ? 0 : 1);
+  return other * turns_at_most + std::min(like.turns, turns_at_most - 1);
 }
 
 /// All branches of the first pose with one gamma; where a start is wanted, the one that is nearest to it.
@@ -62,6 +78,8 @@ std::vector<Candidate> candidates(const robot::Kinematics& kinematics, const Hea
     add_branches(kinematics, head, options, options.gamma_rad.value_or(0.0), out);
     return out;
   }
+  // As the start has the flange: the grid of gammas misses it.
+  if (options.start) add_branches(kinematics, head, options, kinematics.forward(*options.start).gamma_rad, out);
   for (int k = 0; k < options.gammas; ++k) {
     // 0, then to both sides: of equals the first is taken.
     const int turn = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
@@ -72,10 +90,12 @@ std::vector<Candidate> candidates(const robot::Kinematics& kinematics, const Hea
 
 /// Walks all of them and puts the best first; a stable order, so that threads change nothing.
 void walk_all(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-              const WalkOptions& options, std::vector<Candidate>& all) {
+              const WalkOptions& options, const std::optional<robot::Position6>& home, std::vector<Candidate>& all) {
   parallel_for(all.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      all[i].walk = walk(kinematics, head, along, {all[i].gamma_rad}, all[i].start, options);
+      Candidate& one = all[i];
+      one.walk = walk(kinematics, head, along, {one.gamma_rad}, one.start, options);
+      if (home) one.like = resemblance(kinematics, *home, one.start, one.walk.low, one.walk.high);
     }
   });
   std::stable_sort(all.begin(), all.end(), better);
@@ -120,24 +140,113 @@ End end_of(const robot::Kinematics& kinematics, const Head& head, const Candidat
   return out;
 }
 
-/// Walks candidates exactly, in order of what rough walks promise, until none can be better any more: those see no more
-/// than half of what is near. The best is left in front.
-void walk_exactly(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-                  std::vector<Candidate>& all) {
-  constexpr std::size_t at_once = 8;
-  std::vector<Candidate> walked;
-  walked.reserve(all.size());
-  for (std::size_t begin = 0; begin < all.size(); begin += at_once) {
-    const auto best = std::min_element(walked.begin(), walked.end(), better);
-    if (best != walked.end() && found(best->walk) && !better(all[begin], *best)) break;
-    std::vector<Candidate> next;
-    next.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
-                all.begin() + static_cast<std::ptrdiff_t>(std::min(begin + at_once, all.size())));
-    walk_all(kinematics, head, along, exactly, next);
-    walked.insert(walked.end(), next.begin(), next.end());
+/// Of a field in order of margin, half of what is kept is the first of it, half what resembles home most.
+void narrow(std::vector<Candidate>& all) {
+  if (all.size() <= second_candidates) return;
+  std::stable_sort(all.begin() + second_candidates / 2, all.end(), [](const Candidate& a, const Candidate& b) {
+    return found(a.walk) && found(b.walk) ? rank(a) < rank(b) : better(a, b);
+  });
+  all.resize(second_candidates);
+}
+
+/// Walks candidates of one rank exactly, and puts the best first.
+class ExactWalks {
+ public:
+  ExactWalks(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
+             const PostureOptions& options)
+      : kinematics_(kinematics), head_(head), along_(along), options_(options) {}
+
+  /// In order of what rough walks promise, until none can be better any more: those see no more than half of what is
+  /// near. Leaves out those not walked.
+  void put_best_first(std::vector<Candidate>& all) const {
+    std::vector<Candidate> walked;
+    walked.reserve(all.size());
+    for (std::size_t begin = 0; begin < all.size(); begin += at_once) {
+      const auto best = std::min_element(walked.begin(), walked.end(), better);
+      if (best != walked.end() && found(best->walk) && !better(all[begin], *best)) break;
+      const std::vector<Candidate> next = some(all, begin);
+      walked.insert(walked.end(), next.begin(), next.end());
+    }
+    std::stable_sort(walked.begin(), walked.end(), better);
+    all = std::move(walked);
   }
-  std::stable_sort(walked.begin(), walked.end(), better);
-  all = std::move(walked);
+
+  /// The one nearest to home that has so much margin.
+  /// @param best  has it
+  [[nodiscard]] Candidate nearest(std::vector<Candidate> all, Candidate best, double margin) const {
+    const auto enough = [&](const Candidate& one) { return found(one.walk) && one.walk.margin.least >= margin; };
+    all.erase(std::remove_if(all.begin(), all.end(), [&](const Candidate& one) { return !enough(one); }), all.end());
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.like.distance < b.like.distance; });
+    for (std::size_t begin = 0; begin < all.size(); begin += at_once) {
+      const std::vector<Candidate> next = some(all, begin);
+      // Exactly walked they may have come down in rank or margin.
+      for (const Candidate& one : next) {
+        if (enough(one) && rank(one) <= rank(best) && one.like.distance < best.like.distance) best = one;
+      }
+      if (best.like.distance <= all[std::min(begin + at_once, all.size()) - 1].like.distance) break;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t at_once = 8;
+
+  std::vector<Candidate> some(const std::vector<Candidate>& all, std::size_t begin) const {
+    std::vector<Candidate> out;
+    out.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
+               all.begin() + static_cast<std::ptrdiff_t>(std::min(begin + at_once, all.size())));
+    walk_all(kinematics_, head_, along_, exactly, options_.home, out);
+    return out;
+  }
+
+  const robot::Kinematics& kinematics_;
+  const Head& head_;
+  const std::vector<double>& along_;
+  const PostureOptions& options_;
+};
+
+/// Puts the one to take first, or where none goes through, the one that gets farthest.
+void choose_exactly(const ExactWalks& walks, const PostureOptions& options, std::vector<Candidate>& all) {
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    return found(a.walk) && found(b.walk) && rank(a) != rank(b) ? rank(a) < rank(b) : better(a, b);
+  });
+  std::vector<std::vector<Candidate>> kinds;  // by rank, as they are roughly
+  std::vector<Candidate> bests;
+  double largest = 0.0;
+  for (auto begin = all.begin(); begin != all.end();) {
+    const auto end = std::find_if(begin, all.end(), [&](const Candidate& one) {
+      return rank(one) != rank(*begin) || found(one.walk) != found(begin->walk);
+    });
+    std::vector<Candidate> walked(begin, end);
+    kinds.push_back(walked);
+    walks.put_best_first(walked);
+    bests.push_back(walked.front());
+    begin = end;
+    if (!found(bests.back().walk)) continue;
+    largest = std::max(largest, bests.back().walk.margin.least);
+    if (largest >= ample_margin) break;
+  }
+  const double enough = largest >= ample_margin ? ample_margin : 0.5 * largest;
+  for (std::size_t k = 0; k < bests.size(); ++k) {
+    const double margin = bests[k].walk.margin.least;
+    if (!found(bests[k].walk) || margin < enough) continue;
+    Candidate chosen = bests[k];
+    if (options.home) {
+      chosen = walks.nearest(kinds[k], chosen, std::max(enough, (1.0 - options.margin_for_home) * margin));
+    }
+    all = {std::move(chosen)};
+    return;
+  }
+  std::stable_sort(bests.begin(), bests.end(), better);
+  // Of those that get as far, what the one that resembles home meets says most.
+  const auto& farthest = bests.front();
+  const auto most_alike = std::min_element(bests.begin(), bests.end(), [&](const Candidate& a, const Candidate& b) {
+    const double block = std::ceil(farthest.walk.t);
+    const bool a_far = std::ceil(a.walk.t) == block, b_far = std::ceil(b.walk.t) == block;
+    return a_far != b_far ? a_far : rank(a) < rank(b);
+  });
+  all = {*most_alike};
 }
 
 std::string number(double value, const char* unit) {
@@ -146,11 +255,35 @@ std::string number(double value, const char* unit) {
   return text;
 }
 
+std::string degrees(double angle_rad) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.2g°", angle_rad / units::deg);
+  return text;
+}
+
+/// Where no way passes a singularity, joints jump or cannot follow: the error says which it is and how near.
+InvalidInput named_singularity(const InvalidInput& error, const robot::Reach& reach,
+                               const robot::Configuration& configuration) {
+  const bool met = reach.status == robot::Reach::Status::jump || reach.status == robot::Reach::Status::singular;
+  const std::string near = met ? singularity_text(configuration) : std::string();
+  if (near.empty()) return error;
+  InvalidInput::Parts parts = error.parts();
+  if (reach.status == robot::Reach::Status::jump) parts.rule = "leads past a singularity";
+  parts.rule += ": " + near;
+  if (configuration.wrist_rad < near_angle)
+    parts.hint = "Tilt the workpiece, or mount the tool across the flange's axis";
+  return InvalidInput(std::move(parts));
+}
+
 }  // namespace
 
 void PostureOptions::validate() const {
   if (gamma_rad) require_finite("gamma_rad", *gamma_rad, "rad");
   if (start && !start->allFinite()) throw InvalidInput("start", "must be finite");
+  if (home && !home->allFinite()) throw InvalidInput("home", "must be finite");
+  if (!(margin_for_home >= 0.0 && margin_for_home <= 1.0)) {
+    throw InvalidInput("margin_for_home", margin_for_home, "", "must lie in [0, 1]");
+  }
   if (gammas < 4) throw InvalidInput("gammas", gammas, "", "must be >= 4");
   require_positive("max_axis_step_rad", max_axis_step_rad, "rad");
   require_positive("max_tip_step_m", max_tip_step_m, "m");
@@ -188,6 +321,43 @@ InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kin
   return InvalidInput(std::move(parts));
 }
 
+Resemblance resemblance(const robot::Kinematics& kinematics, const robot::Position6& home,
+                        const robot::Position6& start, const robot::Position6& low, const robot::Position6& high) {
+  Resemblance out;
+  if (!kinematics.turns_about_axis()) return out;
+  const robot::Configuration at_home = kinematics.configuration(home), here = kinematics.configuration(start);
+  out.known = at_home.known && here.known;
+  if (out.known) {
+    out.shoulder = at_home.shoulder_m < between_length_m || at_home.shoulder_back == here.shoulder_back;
+    out.elbow = at_home.elbow_rad < between_angle || at_home.elbow_down == here.elbow_down;
+    out.wrist = at_home.wrist_rad < between_angle || at_home.wrist_flipped == here.wrist_flipped;
+  }
+  const robot::JointLimits& limits = kinematics.limits();
+  for (int i = 0; i < kinematics.joints(); ++i) {
+    const double half = 0.5 * limits.max_position(i) - 0.5 * limits.min_position(i);
+    const double away = std::abs(0.5 * (low(i) + high(i)) - home(i));
+    // Half a turn to one side is no farther than half a turn to the other.
+    out.turns += static_cast<int>(std::max(0.0, std::ceil((away - std::numbers::pi - 1e-9) / units::revolution)));
+    out.distance += std::pow((start(i) - home(i)) / std::min(half, units::revolution), 2);
+  }
+  out.distance = std::sqrt(out.distance);
+  return out;
+}
+
+std::string singularity_text(const robot::Configuration& configuration) {
+  if (!configuration.known) return {};
+  if (configuration.wrist_rad < near_angle) {
+    return "axes 4 and 6 stand " + degrees(configuration.wrist_rad) + " from one line";
+  }
+  if (configuration.elbow_rad < near_angle) {
+    return "the arm stands " + degrees(configuration.elbow_rad) + " from stretched or folded";
+  }
+  if (configuration.shoulder_m < near_length_m) {
+    return "the wrist's centre stands " + number(configuration.shoulder_m / units::mm, "mm") + " from axis 1";
+  }
+  return {};
+}
+
 PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
                              const PostureOptions& options) {
   options.validate();
@@ -197,23 +367,32 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
   const std::vector<double> along = stations(head, options);
   std::vector<Candidate> all = candidates(kinematics, head, options);
   const auto reject = [&](const robot::Reach& reach, std::size_t block) {
-    return cannot_take(reach, kinematics, block, head.line[block]);
+    return named_singularity(cannot_take(reach, kinematics, block, head.line[block]), reach,
+                             kinematics.configuration(all.front().walk.last));
+  };
+  const auto describe = [&] {
+    out.at_margin = kinematics.configuration(out.margin.position);
+    if (!options.home) return;
+    const robot::Position6& start = out.posture.start;
+    const Walk whole = walk(kinematics, head, along, out.posture.gamma_rad, start, roughly);
+    out.resemblance = resemblance(kinematics, *options.home, start, whole.low, whole.high);
   };
   if (all.empty()) {
     const robot::Position6 near = options.start.value_or(robot::Position6::Zero());
     throw cannot_take(reach_of(kinematics, head.pose.front(), near, options), kinematics, 0, 0);
   }
-  walk_all(kinematics, head, thinned(along, first_places), roughly, all);
-  if (all.size() > second_candidates) all.resize(second_candidates);
-  walk_all(kinematics, head, thinned(along, second_places), roughly, all);
+  walk_all(kinematics, head, thinned(along, first_places), roughly, options.home, all);
+  narrow(all);
+  walk_all(kinematics, head, thinned(along, second_places), roughly, options.home, all);
   const bool may_turn = !options.gamma_rad && kinematics.turns_about_axis();
   const bool want_turning = may_turn && options.free_gamma;
   if (!want_turning) {
-    walk_exactly(kinematics, head, along, all);
+    choose_exactly(ExactWalks(kinematics, head, along, options), options, all);
     const Candidate& best = all.front();
     if (found(best.walk)) {
       out.posture = {.start = best.start, .gamma_rad = {best.gamma_rad}};
       out.margin = best.walk.margin;
+      describe();
       return out;
     }
   }
@@ -223,6 +402,7 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
   if (turning.gamma_rad.empty()) throw reject(end.reach, end.block);
   out.margin = walk(kinematics, head, along, turning.gamma_rad, turning.start, exactly).margin;
   out.posture = std::move(turning);
+  describe();
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "testing/robot/arms.hpp"
@@ -95,6 +96,108 @@ TEST(Posture, KeepsTheGammaAndTheStartThatAreGiven) {
   EXPECT_LE(fixed.margin.least, free.margin.least + 0.01);
   options.start = fixed.posture.start.array() + 0.05;
   EXPECT_LT((choose_posture(source, machine, options).posture.start - fixed.posture.start).norm(), 1e-9);
+}
+
+// Independent of the library's flags: an arm like the KUKA bends its elbow by joint 3 and its wrist by joint 5 alone.
+const double stretched = std::atan2(1.2, 0.041) - arms::pi;  // joint 3 where upper arm and forearm are in line
+bool bends_alike(const robot::Position6& a, const robot::Position6& b) {
+  return std::sin(a(2) - stretched) * std::sin(b(2) - stretched) > 0.0 && std::sin(a(4)) * std::sin(b(4)) > 0.0;
+}
+
+TEST(Posture, StandsAsAtHomeWithoutWholeTurns) {
+  const robot::Cell cell = facing_cell();
+  const robot::SerialKinematics machine(cell);
+  const program::Program program = cone_of_axes();
+  program::ProgramSource source(program);
+  int alike = 0;
+  for (const double elbow_deg : {-130.0, 20.0}) {
+    for (const double wrist_deg : {-50.0, 50.0}) {
+      robot::Position6 home;
+      home << 0.0, 0.0, elbow_deg, 0.0, wrist_deg, 0.0;
+      home *= arms::pi / 180.0;
+      const PostureChoice choice = choose_posture(source, machine, {.home = home});
+      ASSERT_TRUE(choice.resemblance.has_value());
+      const Resemblance& like = *choice.resemblance;
+      EXPECT_TRUE(like.known);
+      if (choice.margin.least >= 0.05 && like.elbow && like.wrist) {
+        EXPECT_TRUE(bends_alike(choice.posture.start, home)) << elbow_deg << ' ' << wrist_deg;
+        ++alike;
+      }
+      EXPECT_EQ(like.turns, 0);
+      expect_followed(machine, program, choice.posture, 0.1);
+    }
+  }
+  EXPECT_GE(alike, 2) << "both ways of the wrist";
+}
+
+// The same pose by (141°, -60°) and, a turn on, (-219°, 300°): limits of +-350° allow both.
+TEST(Posture, UnwindsWhatLimitsWouldLetWind) {
+  const robot::SerialKinematics machine(facing_cell());
+  Random random(7);
+  for (int k = 0; k < robomill::test::seeds(40); ++k) {
+    robot::Position6 home = arms::kr210_posture();
+    for (double& angle : home) angle += random.uniform(-0.3, 0.3);
+    robot::Position6 start = home;
+    for (double& angle : start) angle += random.uniform(-0.2, 0.2);
+    const robot::ToolPose tool = machine.forward(start);
+    const program::Program program =
+        program_of({.tip_m = tool.tip_m, .axis = tool.axis},
+                   {{.tip_m = tool.tip_m + Eigen::Vector3d(0.0, 0.01, 0.0), .axis = tool.axis}});
+    program::ProgramSource source(program);
+    const PostureChoice choice =
+        choose_posture(source, machine, {.gamma_rad = tool.gamma_rad, .home = home, .margin_for_home = 1.0});
+    EXPECT_LT((choice.posture.start - start).cwiseAbs().maxCoeff(), 1e-8) << k;
+  }
+}
+
+TEST(Posture, TakesAnotherConfigurationOnlyWhereHomesDoesNotGoThrough) {
+  robot::Cell cell = facing_cell();
+  const program::Program program = cone_of_axes();
+  program::ProgramSource source(program);
+  const robot::Position6 home = arms::kr210_posture();
+  const PostureChoice free = choose_posture(source, robot::SerialKinematics(cell), {.home = home});
+  ASSERT_TRUE(free.resemblance->elbow);
+  // Joint 3 may not bend as at home.
+  ASSERT_GT(home(2), stretched);
+  cell.arm.joints[2].min_position = -1.5 * arms::pi;
+  cell.arm.joints[2].max_position = stretched;
+  const PostureChoice other = choose_posture(source, robot::SerialKinematics(cell), {.home = home});
+  EXPECT_FALSE(other.resemblance->elbow);
+  EXPECT_LT(other.resemblance->distance, 3.0);
+}
+
+TEST(Posture, NamesTheSingularityThatItPasses) {
+  // The spindle's axis is axis 6; the tip goes past the plane in which axes 4 and 6 could be one line.
+  const robot::SerialKinematics machine(facing_cell());
+  robot::Position6 there = arms::kr210_posture();
+  const auto pose = [&](double angle_5, double angle_1) {
+    there(0) = angle_1;
+    there(3) = 0.0;
+    there(4) = angle_5;
+    const robot::ToolPose tool = machine.forward(there);
+    return program::Pose{.tip_m = tool.tip_m, .axis = tool.axis};
+  };
+  const program::Pose from = pose(0.05, 0.0);
+  const program::Program program = program_of(from, {pose(-0.05, 0.0)});
+  program::ProgramSource source(program);
+  (void)pose(0.05, 0.0);
+  const std::string said = rejection([&] { (void)choose_posture(source, machine, {.start = there, .home = there}); });
+  EXPECT_NE(said.find("block 1 (line 10): leads "), std::string::npos) << said;
+  EXPECT_NE(said.find("axes 4 and 6 stand "), std::string::npos) << said;
+  EXPECT_NE(said.find("° from one line"), std::string::npos) << said;
+}
+
+TEST(Posture, SaysWhatAPositionStandsNextTo) {
+  robot::Configuration at{.known = true, .shoulder_m = 1.0, .elbow_rad = 1.0, .wrist_rad = 0.31 * units::deg};
+  EXPECT_EQ(singularity_text(at), "axes 4 and 6 stand 0.31° from one line");
+  at.wrist_rad = 0.1;
+  EXPECT_EQ(singularity_text(at), "");
+  at.elbow_rad = 2.0 * units::deg;
+  EXPECT_EQ(singularity_text(at), "the arm stands 2° from stretched or folded");
+  at.elbow_rad = 1.0;
+  at.shoulder_m = 0.012;
+  EXPECT_EQ(singularity_text(at), "the wrist's centre stands 12 mm from axis 1");
+  EXPECT_EQ(singularity_text({}), "");
 }
 
 TEST(Posture, IsTheSameOnAnyNumberOfThreads) {
@@ -239,6 +342,8 @@ TEST(Posture, RejectsWhatMakesNoSense) {
   };
   EXPECT_EQ(rejected({.gamma_rad = std::nan("")}), "gamma_rad");
   EXPECT_EQ(rejected({.start = robot::Position6::Constant(HUGE_VAL)}), "start");
+  EXPECT_EQ(rejected({.home = robot::Position6::Constant(HUGE_VAL)}), "home");
+  EXPECT_EQ(rejected({.margin_for_home = 1.5}), "margin_for_home");
   EXPECT_EQ(rejected({.gammas = 3}), "gammas");
   EXPECT_EQ(rejected({.max_axis_step_rad = 0.0}), "max_axis_step_rad");
   EXPECT_EQ(rejected({.max_tip_step_m = -1.0}), "max_tip_step_m");

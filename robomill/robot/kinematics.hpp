@@ -45,6 +45,17 @@ struct Reach {
                         ///< [rad] where only the wrist cannot bend far enough, 0 where there is no such number
 };
 
+/// Which of its ways to a pose an arm with a spherical wrist takes, and how far it is from where two ways meet.
+struct Configuration {
+  bool known = false;          ///< false of machines that have no such ways in closed form
+  bool shoulder_back = false;  ///< as InverseSolution, the next five too
+  bool elbow_down = false;
+  bool wrist_flipped = false;
+  double shoulder_m = 0.0;
+  double elbow_rad = 0.0;
+  double wrist_rad = 0.0;
+};
+
 /// A machine that puts a tool at poses: up to six joints, one position followed from pose to pose.
 class ROBOMILL_API Kinematics {
  public:
@@ -73,6 +84,7 @@ class ROBOMILL_API Kinematics {
   /// How far a position is from a singularity, in (0, 1]: 1 / condition number of the machine's Jacobian, lengths in
   /// units of a characteristic length.
   [[nodiscard]] virtual double regularity(const Position6& position) const noexcept = 0;
+  [[nodiscard]] virtual Configuration configuration(const Position6& /*position*/) const noexcept { return {}; }
 };
 
 }  // namespace robomill::robot

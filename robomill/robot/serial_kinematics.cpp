@@ -307,4 +307,31 @@ double SerialKinematics::regularity(const Position6& position) const noexcept {
   return std::sqrt(std::max(squares.eigenvalues()(0), 0.0) / squares.eigenvalues()(5));
 }
 
+Configuration SerialKinematics::configuration(const Position6& position) const noexcept {
+  Configuration out;
+  if (!inverse_) return out;
+  Posture posture;
+  posture.update(cell_.arm, position);
+  // Of all ways to the flange's pose the one that the position is, whole turns apart.
+  const InverseSolutions solutions = inverse_->solve(posture.flange, position);
+  double least = HUGE_VAL;
+  for (int k = 0; k < solutions.count; ++k) {
+    const InverseSolution& way = solutions.solution[static_cast<std::size_t>(k)];
+    double apart = 0.0;
+    for (int i = 0; i < 6; ++i) {
+      apart = std::max(apart, std::abs(std::remainder(way.position_rad(i) - position(i), units::revolution)));
+    }
+    if (!(apart < least)) continue;
+    least = apart;
+    out = {.known = true,
+           .shoulder_back = way.shoulder_back,
+           .elbow_down = way.elbow_down,
+           .wrist_flipped = way.wrist_flipped,
+           .shoulder_m = solutions.shoulder_m,
+           .elbow_rad = way.elbow_rad,
+           .wrist_rad = way.wrist_rad};
+  }
+  return out;
+}
+
 }  // namespace robomill::robot

@@ -47,6 +47,7 @@ class ROBOMILL_API SerialKinematics final : public Kinematics {
   [[nodiscard]] Reach follow(const ToolJet& jet, const Position6& near, JointJet& joints) const noexcept override;
   [[nodiscard]] ToolPose forward(const Position6& position) const noexcept override;
   [[nodiscard]] double regularity(const Position6& position) const noexcept override;
+  [[nodiscard]] Configuration configuration(const Position6& position) const noexcept override;
 
  private:
   struct Screws;

@@ -42,6 +42,30 @@ std::vector<Arm> arms() {
   return {testing::kr210(), testing::irb(), testing::ur5e()};
 }
 
+// Joint 3 from where the arm is stretched and joint 5 by their signs; joint 1 by the side of the wrist's centre.
+TEST(SerialKinematics, NamesTheConfigurationOfAPosition) {
+  Random random(3);
+  for (int k = 0; k < seeds(300); ++k) {
+    const SerialKinematics machine(cell_of(testing::kr210(), random));
+    Position6 a, b;
+    for (double& angle : a) angle = random.uniform(-testing::pi, testing::pi);
+    b = a;
+    b(0) += random.uniform(-3.0, 3.0);
+    b(3) += 2.0 * testing::pi;
+    b(5) += random.uniform(-6.0, 6.0);
+    const Configuration at_a = machine.configuration(a), at_b = machine.configuration(b);
+    ASSERT_TRUE(at_a.known && at_b.known);
+    EXPECT_EQ(at_a.shoulder_back, at_b.shoulder_back) << "joints 1, 4 and 6 change nothing";
+    EXPECT_EQ(at_a.elbow_down, at_b.elbow_down);
+    EXPECT_EQ(at_a.wrist_flipped, at_b.wrist_flipped);
+    EXPECT_NEAR(at_a.wrist_rad, std::min(std::abs(a(4)), testing::pi - std::abs(a(4))), 1e-7);
+    b(4) = -a(4);
+    EXPECT_NE(machine.configuration(b).wrist_flipped, at_a.wrist_flipped);
+    EXPECT_EQ(machine.configuration(b).elbow_down, at_a.elbow_down);
+  }
+  EXPECT_FALSE(SerialKinematics(cell_of(testing::ur5e(), random)).configuration(Position6::Zero()).known);
+}
+
 TEST(SerialKinematics, FollowsAsChooseDoes) {
   Random random(71);
   const Cell cell = cell_of(testing::with_limits(testing::kr210()), random);

@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/cell_check/tool_places.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::jobs {
@@ -49,11 +50,8 @@ Placement judge(const CellFile& cell, const Eigen::Isometry3d& workpiece, const 
   const ToolPlaces places(cell, workpiece);
   look_at_poses(places, targets.head, out, progress);
   if (!out.misses.empty() || targets.source == nullptr || targets.head.line.empty()) return out;
-  path::PostureOptions options;
-  if (cell.gamma_given) options.gamma_rad = cell.redundant_gamma_rad;
-  if (!cell.start_joints.empty()) options.start = position_of(cell.start_joints);
   try {
-    out.choice = path::choose_posture(*targets.source, places.machine(), options);
+    out.choice = path::choose_posture(*targets.source, places.machine(), posture_options(cell, places.machine()));
   } catch (const InvalidInput& error) {
     out.no_way = error.parts().field + " " + error.parts().rule;
   }

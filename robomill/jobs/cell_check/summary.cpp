@@ -9,6 +9,7 @@
 #include "robomill/io/append.hpp"
 #include "robomill/jobs/cell_check.hpp"
 #include "robomill/jobs/cell_check/shown.hpp"
+#include "robomill/jobs/posture_choice.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -149,6 +150,7 @@ void add_placement(std::string& out, const CellCheck& check) {
   if (placement.works()) {
     append(out, "\nplacement  {} is reached{}; least {}\n", what, gamma_text(check, placement.choice),
            margin_text(placement.choice.margin));
+    append(out, "posture    {}\n", posture_text(placement.choice, check.joints, check.prismatic));
     return;
   }
   append(out, "\nplacement  fails: ");

@@ -6,6 +6,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/cell_check/shown.hpp"
+#include "robomill/path/files/smooth_object.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -119,9 +120,10 @@ Json workpiece_json(const Eigen::Isometry3d& workpiece) {
 }
 
 /// How a program, or the origin, is reached.
-void add_choice(const path::PostureChoice& choice, bool turns, Json& out) {
+void add_choice(const CellCheck& check, const path::PostureChoice& choice, Json& out) {
   const std::vector<double>& gamma_rad = choice.posture.gamma_rad;
   out["margin"] = io::number(choice.margin.least);
+  out["posture"] = path::posture_object(choice, check.joints, check.prismatic);
   out["margin_joint"] = choice.margin.joint < 0 ? io::Json() : io::Json(choice.margin.joint + 1);
   if (!turns || gamma_rad.empty()) {
     out["gamma_deg"] = nullptr;
@@ -143,7 +145,7 @@ Json placement_json(const CellCheck& check) {
   out["misses"] = Json::array();
   for (const Miss& miss : placement.misses) out["misses"].push_back(miss_json(check, miss));
   out["no_way"] = placement.no_way.empty() ? Json() : Json(placement.no_way);
-  if (placement.works()) add_choice(placement.choice, !check.cell.hybrid, out);
+  if (placement.works()) add_choice(check, placement.choice, out);
   return out;
 }
 
@@ -151,7 +153,7 @@ Json proposal_json(const CellCheck& check, const Proposal& proposal) {
   Json out = workpiece_json(proposal.placement.workpiece);
   out["shift_mm"] = lengths(proposal.shift_m);
   out["turn_deg"] = io::number(proposal.turn_rad / units::deg);
-  add_choice(proposal.placement.choice, !check.cell.hybrid, out);
+  add_choice(check, proposal.placement.choice, out);
   return out;
 }
 

@@ -41,6 +41,7 @@ struct CellFile {
   double redundant_gamma_rad = 0.0;                   ///< turn of the flange about the tool's axis, robot::ToolPose
   bool gamma_given = false;                           ///< the file says so; else it is free to choose where a stage can
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
+  bool posture_asked = false;                         ///< they were asked for: nearness to them before margin
   std::vector<double> home = {};  ///< start_joints, else those of the model's own cell; empty where neither is said
   std::string model = {};         ///< robot.model: one of known_arms(); empty where not by name
   std::string maker = {};  ///< of the arm, by its model or its URDF: path::maker_kuka, …; empty where not known

@@ -63,6 +63,8 @@ struct Job {
   decision::FinishLimits finish = {};
   DecideOptions decide = {};  ///< of a job that judges blocks
   std::vector<TestCut> cuts = {};
+  std::vector<double> near_deg =
+      {};  ///< joints to begin the program near, asked for beside the file; empty: the cell's
 
   /// Whether every block of a program is looked at: forces along it, and a robot.
   [[nodiscard]] bool judges_blocks() const { return !forces.empty() && !cell.empty() && !program.empty(); }

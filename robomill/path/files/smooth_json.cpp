@@ -5,6 +5,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/path/files/smooth_object.hpp"
 
 namespace robomill::path {
 namespace {
@@ -144,6 +145,29 @@ io::Json run_json(const ProgramRun& run) {
 
 }  // namespace
 
+io::Json posture_object(const PostureChoice& choice, int joints, const std::array<bool, 6>& prismatic) {
+  io::Json out = {{"joints", io::Json::array()}};
+  for (int i = 0; i < joints; ++i) {
+    const bool slides = prismatic.at(static_cast<std::size_t>(i));
+    out["joints"].push_back({{"unit", slides ? "mm" : "deg"},
+                             {"position", io::number(choice.posture.start(i) / (slides ? units::mm : units::deg))}});
+  }
+  const bool known = choice.resemblance && choice.resemblance->known;
+  const auto as_at_home = [&](bool Resemblance::*part) {
+    return known ? io::Json((*choice.resemblance).*part) : io::Json();
+  };
+  out["shoulder_as_at_home"] = as_at_home(&Resemblance::shoulder);
+  out["elbow_as_at_home"] = as_at_home(&Resemblance::elbow);
+  out["wrist_as_at_home"] = as_at_home(&Resemblance::wrist);
+  out["whole_turns_from_home"] = choice.resemblance ? io::Json(choice.resemblance->turns) : io::Json();
+  out["margin"] = io::number(choice.margin.least);
+  out["margin_block"] = choice.margin.block + 1;
+  out["margin_joint"] = choice.margin.joint < 0 ? io::Json() : io::Json(choice.margin.joint + 1);
+  const std::string near = singularity_text(choice.at_margin);
+  out["near_singularity"] = near.empty() ? io::Json() : io::Json(near);
+  return out;
+}
+
 io::Json smooth_object(const SmoothedProgram& smoothed) {
   if (smoothed.methods.empty()) throw InvalidInput("methods", "must hold at least one");
   io::Json json = method_json(smoothed.methods.front(), smoothed.prismatic);
@@ -154,6 +178,11 @@ io::Json smooth_object(const SmoothedProgram& smoothed) {
   if (smoothed.gamma_rad) {
     const auto& [lowest, highest] = *smoothed.gamma_rad;
     json["gamma_deg"] = {io::number(lowest / units::deg), io::number(highest / units::deg)};
+  }
+  json["posture"] = io::Json();
+  if (smoothed.posture) {
+    const int joints = static_cast<int>(smoothed.methods.front().summary.check.joints.size());
+    json["posture"] = posture_object(*smoothed.posture, joints, smoothed.prismatic);
   }
   json["skipped"] = io::Json::array();
   for (const program::Skipped& item : smoothed.skipped) {

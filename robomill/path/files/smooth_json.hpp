@@ -9,6 +9,7 @@
 #include "robomill/path/files/path_clearance.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
+#include "robomill/path/posture.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
 
@@ -29,6 +30,7 @@ struct SmoothedProgram {
   std::array<bool, 6> prismatic = {};   ///< joints that are lengths [m]
   /// The lowest and the highest turn of the flange about the tool's axis; none where the machine has no such freedom.
   std::optional<std::array<double, 2>> gamma_rad = {};
+  std::optional<PostureChoice> posture = {};     ///< none where it was given
   bool written = false;                          ///< whether there is a trajectory
   std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
   std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one

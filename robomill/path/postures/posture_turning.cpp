@@ -36,8 +36,8 @@ struct Station {
 class Turning {
  public:
   Turning(const robot::Kinematics& kinematics, const Head& head, std::vector<double> along,
-          const PostureOptions& options)
-      : kinematics_(kinematics), head_(head), along_(std::move(along)), options_(options) {}
+          const PostureOptions& options, bool as_at_home)
+      : kinematics_(kinematics), head_(head), along_(std::move(along)), options_(options), as_at_home_(as_at_home) {}
 
   /// Gamma at each station, continuous beyond a turn; empty where no way goes through.
   std::vector<double> best(robot::Position6& start) {
@@ -67,6 +67,10 @@ class Turning {
       }
       for (int k = 0; k < count; ++k) {
         const robot::Position6& position = branches[static_cast<std::size_t>(k)];
+        if (s == 0 && as_at_home_) {
+          const Resemblance like = resemblance(kinematics_, *options_.home, position, position, position);
+          if (!like.shoulder || !like.elbow || !like.wrist || like.turns > 0) continue;
+        }
         const double margin = std::min(limit_share(kinematics_, position).share, kinematics_.regularity(position));
         station.states.push_back({.position = position, .cost = 1.0 / (margin + least_margin), .gamma = g});
       }
@@ -117,6 +121,7 @@ class Turning {
   const Head& head_;
   std::vector<double> along_;
   const PostureOptions& options_;
+  bool as_at_home_;  ///< begin there in no other configuration and without whole turns
   std::vector<Station> stations_ = {};
 };
 
@@ -151,14 +156,17 @@ Posture turning_posture(const robot::Kinematics& kinematics, const Head& head, c
                         const PostureOptions& options) {
   const std::vector<double> places = thinned(along, most_stations);
   Posture out;
-  const std::vector<double> steps = Turning(kinematics, head, places, options).best(out.start);
-  if (steps.empty()) return out;
-  // The grid's steps are smoothed as far as the way allows.
-  for (const std::size_t width : {16U, 8U, 4U, 2U, 1U, 0U}) {
-    const std::vector<double> gamma = at_blocks(places, smoothed(steps, width), head.line.size());
-    if (walk(kinematics, head, along, gamma, out.start, {}).reach.status != robot::Reach::Status::found) continue;
-    out.gamma_rad = gamma;
-    break;
+  for (const bool as_at_home : {true, false}) {
+    if (as_at_home && !options.home) continue;
+    const std::vector<double> steps = Turning(kinematics, head, places, options, as_at_home).best(out.start);
+    if (steps.empty()) continue;
+    // The grid's steps are smoothed as far as the way allows.
+    for (const std::size_t width : {16U, 8U, 4U, 2U, 1U, 0U}) {
+      const std::vector<double> gamma = at_blocks(places, smoothed(steps, width), head.line.size());
+      if (walk(kinematics, head, along, gamma, out.start, {}).reach.status != robot::Reach::Status::found) continue;
+      out.gamma_rad = gamma;
+      return out;
+    }
   }
   return out;
 }

@@ -108,11 +108,18 @@ Walk walk(const robot::Kinematics& kinematics, const Head& head, const std::vect
     const LimitShare share = limit_share(kinematics, next);
     const double least = std::min(share.share, regularity);
     if (least < out.margin.least) {
-      out.margin = {.least = least, .block = block_of(head, t), .joint = share.share <= regularity ? share.joint : -1};
+      out.margin = {.least = least,
+                    .block = block_of(head, t),
+                    .joint = share.share <= regularity ? share.joint : -1,
+                    .position = next};
     }
     position = next;
+    out.last = next;
+    out.low = out.low.cwiseMin(next);
+    out.high = out.high.cwiseMax(next);
     out.t = t;
   };
+  out.low = out.high = out.last = start;
   out.reach = try_at(along.front());
   if (out.reach.status != robot::Reach::Status::found) return out;
   look(along.front(), kinematics.regularity(next));

@@ -45,9 +45,11 @@ struct WalkOptions {
 
 /// What following a way along its stations met.
 struct Walk {
-  robot::Reach reach = {};  ///< found: to the end
-  double t = 0.0;           ///< where it ended
-  Margin margin = {};       ///< the least up to there
+  robot::Reach reach = {};                                                           ///< found: to the end
+  double t = 0.0;                                                                    ///< where it ended
+  Margin margin = {};                                                                ///< the least up to there
+  robot::Position6 low = robot::Position6::Zero(), high = robot::Position6::Zero();  ///< of each joint up to there
+  robot::Position6 last = robot::Position6::Zero();                                  ///< taken
 };
 [[nodiscard]] Walk walk(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
                         const std::vector<double>& gamma_rad, const robot::Position6& start,
