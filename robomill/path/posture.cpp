@@ -144,7 +144,7 @@ End end_of(const robot::Kinematics& kinematics, const Head& head, const Candidat
 void narrow(std::vector<Candidate>& all) {
   if (all.size() <= second_candidates) return;
   std::stable_sort(all.begin() + second_candidates / 2, all.end(), [](const Candidate& a, const Candidate& b) {
-    return found(a.walk) && found(b.walk) ? rank(a) < rank(b) : better(a, b);
+    return found(a.walk) != found(b.walk) ? found(a.walk) : rank(a) < rank(b);
   });
   all.resize(second_candidates);
 }
