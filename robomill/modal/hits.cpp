@@ -279,7 +279,10 @@ FrfResult estimate_frfs(const std::vector<Hit>& hits, const HitOptions& options,
   for (const Hit& hit : hits) {
     const Pulse pulse = find_pulse(hit.force_n);
     result.hits.push_back(judge_hit(hit, pulse, options));
-    if (result.hits.back().accepted) accepted.push_back({.hit = &hit, .pulse = pulse});
+    HitVerdict& verdict = result.hits.back();
+    if (const auto again = repetition(hits, result.hits.size() - 1)) verdict.reasons.push_back(*again);
+    verdict.accepted = verdict.reasons.empty();
+    if (verdict.accepted) accepted.push_back({.hit = &hit, .pulse = pulse});
     progress.advance();
   }
   if (accepted.empty()) throw none_accepted(result.hits);

@@ -288,6 +288,34 @@ TEST(EstimateFrfs, RejectsADoubleHitAndSaysWhy) {
   expect_rejection({hits[1]}, up_to(600.0), "hit_x_2.csv: double hit");
 }
 
+TEST(EstimateFrfs, CountsOneRecordOnce) {
+  std::vector<Hit> hits = brief_hits();
+  hits.push_back(hits[1]);
+  hits.back().file = "hit_x_2_copy.csv";
+  FrfResult result = estimate_frfs(hits, up_to(600.0));
+  ASSERT_EQ(result.hits[3].reasons.size(), 1u);
+  EXPECT_EQ(result.hits[3].reasons[0], "is the hit of hit_x_2.csv again, sample for sample: a hit counts once");
+  EXPECT_EQ(result.grades[0].hits, 3);
+  hits.back().excitation.axis = hits.back().responses[0].dof.axis = Axis::y;
+  result = estimate_frfs(hits, up_to(600.0));
+  ASSERT_EQ(result.hits[3].reasons.size(), 1u);
+  EXPECT_NE(result.hits[3].reasons[0].find("which was in x: a hit has one direction"), std::string::npos);
+  // Two sensors of one hit are two columns of one record.
+  hits.back().excitation.axis = Axis::x;
+  hits.back().responses[0].samples *= 0.5;
+  EXPECT_TRUE(estimate_frfs(hits, up_to(600.0)).hits[3].accepted);
+}
+
+// A time in ms under a name in s, and a rate in kHz or in MHz, are pulses of no hammer.
+TEST(EstimateFrfs, RejectsPulsesThatNoHammerMakes) {
+  for (const double slip : {1e-3, 1e6}) {
+    std::vector<Hit> hits = brief_hits();
+    for (Hit& hit : hits) hit.sample_rate_hz *= slip;
+    const std::string message = test::rejection([&] { static_cast<void>(estimate_frfs(hits, {})); });
+    EXPECT_NE(message.find("is the time in s and the sample rate in Hz?"), std::string::npos) << message;
+  }
+}
+
 TEST(EstimateFrfs, RejectsOverloads) {
   std::vector<Hit> hits = brief_hits();
   const double peak_n = hits[0].force_n.maxCoeff();

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -66,6 +68,22 @@ std::optional<Doubt> doubt(const FrfPart& frf) {
   return std::nullopt;
 }
 
+/// Whether a number or its inverse is written with so few digits that somebody chose it.
+bool is_round(double value, int digits, double precision) {
+  for (const double x : {value, 1.0 / value}) {
+    const double scaled = x * std::pow(10.0, digits - 1 - std::floor(std::log10(x)));
+    if (std::abs(scaled - std::round(scaled)) < precision * scaled) return true;
+  }
+  return false;
+}
+
+/// Lines whose distance is a round number of Hz only after a division by 2π, which no analyser chooses.
+bool looks_angular(double step) {
+  constexpr double written = 2e-7;  // of seven digits
+  return step > 0.0 && std::isfinite(step) && is_round(step / (2.0 * std::numbers::pi), 3, written) &&
+         !is_round(step, 6, written);
+}
+
 }  // namespace
 
 void require_frequencies(const Eigen::VectorXd& axis, const std::string& where) {
@@ -86,6 +104,18 @@ void require_frequencies(const Eigen::VectorXd& axis, const std::string& where) 
 
 void check_content(FrfParts& parts) {
   const std::string file = parts.file.string();
+  const Eigen::VectorXd& axis = parts.frequency_hz;
+  const Eigen::Index lines = axis.size();
+  const double step = lines < fewest_lines ? 0.0 : (axis(lines - 1) - axis(0)) / static_cast<double>(lines - 1);
+  if (looks_angular(step)) {
+    const std::string what = fmt::format(
+        "has lines in steps of {:.9g}, which is 2π × {:.4g}: the frequencies look like "
+        "rad/s",
+        step, step / (2.0 * std::numbers::pi));
+    const bool stated = std::ranges::all_of(parts.frfs, [](const FrfPart& frf) { return frf.stated; });
+    if (!stated) throw InvalidInput(file, what, "Divide them by 2π: frequency_hz is in Hz");
+    parts.notes.push_back(fmt::format("{} {}. Divide them by 2π, or check them before you use the file", file, what));
+  }
   for (const FrfPart& frf : parts.frfs) {
     const std::optional<Doubt> odd = doubt(frf);
     if (!odd) continue;

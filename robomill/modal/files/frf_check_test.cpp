@@ -132,6 +132,28 @@ TEST_F(FrfCheck, NotesWhatIsOddAboutWhatAFileStates) {
       read("f,xy_re_m_per_n,xy_im_m_per_n\n" + cartesian([](double f) { return -receptance(f); })).notes.empty());
 }
 
+// 5 Hz are 31.4159265 rad/s; steps that an analyser chose, 51200/65536 Hz or 1000/1024 Hz, are not taken for angular.
+TEST_F(FrfCheck, NotesFrequenciesInRadiansPerSecond) {
+  const auto at = [&](double unit) {
+    std::string text;
+    for (int line = 0; line < 111; ++line) {
+      const double frequency_hz = 50.0 + 5.0 * line;
+      char row[100];
+      std::snprintf(row, sizeof row, "%.9g,%.9g,%.9g\n", frequency_hz * unit, receptance(frequency_hz).real(),
+                    receptance(frequency_hz).imag());
+      text += row;
+    }
+    return text;
+  };
+  const std::string header = "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n";
+  const std::vector<std::string> notes = read(header + at(2.0 * std::numbers::pi)).notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("2π × 5: the frequencies look like rad/s"), std::string::npos) << notes[0];
+  for (const double unit : {1.0, 0.78125, 0.1953125, 0.762939453125 / 5.0, 1.0 / 3.0, std::numbers::e}) {
+    EXPECT_TRUE(read(header + at(unit)).notes.empty()) << unit;
+  }
+}
+
 TEST_F(FrfCheck, ATimeRecordIsNoFrf) {
   const auto record = [](int columns, double step) {
     std::string text;

@@ -86,31 +86,6 @@ char axis_of(const std::vector<std::string>& words) {
   return 0;
 }
 
-ColumnGuess by_name(const std::string& name, std::size_t number) {
-  ColumnGuess out;
-  out.name = name.empty() ? std::to_string(number) : name;
-  out.unit = unit_in(name);
-  apply_unit(out);
-  const std::vector<std::string> words = words_of(name);
-  out.axis = axis_of(words);
-  const auto is = [&](Role role) {
-    out.role = role;
-    out.from = "its name";
-  };
-  if (io::is_time_column(name) || any_begins(words, {"time", "zeit"})) {
-    is(Role::time);
-  } else if (any_begins(words, {"force", "hammer", "kraft", "impact"}) ||
-             (!words.empty() && (words[0] == "f" || words[0] == "fx" || words[0] == "fy" || words[0] == "fz"))) {
-    is(Role::force);
-  } else if (out.role == Role::unknown &&
-             (out.axis != 0 || any_begins(words, {"acc", "resp", "beschl", "antwort", "vel", "disp", "sensor"}))) {
-    is(Role::response);
-    if (any_begins(words, {"vel"})) out.kind = ResponseKind::velocity;
-    if (any_begins(words, {"disp"})) out.kind = ResponseKind::displacement;
-  }
-  return out;
-}
-
 bool rises_evenly(const Eigen::VectorXd& column) {
   try {
     return io::sample_rate_of(column.head(std::min(looked_at, column.size())), {}) > 0.0;
@@ -267,6 +242,31 @@ void complete_directions(const io::Record& record, HitGuess& guess) {
 
 }  // namespace
 
+ColumnGuess guess_by_name(const std::string& name, std::size_t number) {
+  ColumnGuess out;
+  out.name = name.empty() ? std::to_string(number) : name;
+  out.unit = unit_in(name);
+  apply_unit(out);
+  const std::vector<std::string> words = words_of(name);
+  out.axis = axis_of(words);
+  const auto is = [&](Role role) {
+    out.role = role;
+    out.from = "its name";
+  };
+  if (io::is_time_column(name) || any_begins(words, {"time", "zeit"})) {
+    is(Role::time);
+  } else if (any_begins(words, {"force", "hammer", "kraft", "impact"}) ||
+             (!words.empty() && (words[0] == "f" || words[0] == "fx" || words[0] == "fy" || words[0] == "fz"))) {
+    is(Role::force);
+  } else if (out.role == Role::unknown &&
+             (out.axis != 0 || any_begins(words, {"acc", "resp", "beschl", "antwort", "vel", "disp", "sensor"}))) {
+    is(Role::response);
+    if (any_begins(words, {"vel"})) out.kind = ResponseKind::velocity;
+    if (any_begins(words, {"disp"})) out.kind = ResponseKind::displacement;
+  }
+  return out;
+}
+
 std::vector<std::size_t> HitGuess::with(ColumnGuess::Role role) const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -285,7 +285,7 @@ HitGuess guess_hit(const io::Record& record) {
     const std::string name = i < record.names.size() ? record.names[i] : std::string();
     // Of columns of one name only the number tells which.
     const bool twice = !name.empty() && std::ranges::count(record.names, name) > 1;
-    guess.columns.push_back(by_name(name, i + 1));
+    guess.columns.push_back(guess_by_name(name, i + 1));
     if (twice) guess.columns.back().name = std::to_string(i + 1);
   }
   // Lines over frequency are no record of time.

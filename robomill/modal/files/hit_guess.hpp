@@ -24,6 +24,9 @@ struct ColumnGuess {
   double volts = 0;        ///< a 1 of the column; 0: no voltage
 };
 
+/// What a column's name alone says. @param number  names it where it has no name, from 1
+[[nodiscard]] ColumnGuess guess_by_name(const std::string& name, std::size_t number);
+
 /// What the record of a hammer hit seems to hold.
 struct HitGuess {
   std::vector<ColumnGuess> columns = {};  ///< one a column of the record

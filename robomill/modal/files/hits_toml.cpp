@@ -13,7 +13,9 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/samples.hpp"
+#include "robomill/io/si.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/modal/files/hit_guess.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -25,6 +27,7 @@ struct Sensors {
   double scale = 1.0;  ///< full scale of a WAV
   bool has_scale = false;
   double sample_rate_hz = 0.0;
+  bool force_in_volts = false, response_in_volts = false;  ///< the sensitivities are given
 };
 
 void read_options(io::TomlFile& file, HitOptions& o) {
@@ -91,6 +94,8 @@ void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors)
     response =
         sensitivity(file, response_in_g_key, response_mv, units::standard_gravity, sensors.response_factor) || response;
   }
+  sensors.force_in_volts = force;
+  sensors.response_in_volts = response;
   // Records in volts are neither N nor m/s^2.
   if (file.has(voltage)) {
     if (!force) file.require(force_key, "voltage_unit says that the records are in volts: it is on the hammer's sheet");
@@ -174,7 +179,78 @@ HitRow read_row(io::TomlFile& file, const std::string& row) {
   return out;
 }
 
-Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
+/// What hits.toml takes a column for.
+struct ReadAs {
+  io::Quantity quantity = io::Quantity::force;
+  std::string unit = "N";
+  bool in_volts = false;      ///< a sensitivity is given …
+  double given_factor = 1.0;  ///< … and makes so much of a 1
+  std::string sensitivity = force_key;
+};
+
+ReadAs response_read_as(ResponseKind kind, const Sensors& sensors) {
+  const bool in_volts = sensors.response_in_volts;
+  const double given = sensors.response_factor;
+  switch (kind) {
+    case ResponseKind::acceleration:
+      return {io::Quantity::acceleration, "m/s²", in_volts, given, response_in_g_key};
+    case ResponseKind::velocity:
+      return {io::Quantity::velocity, "m/s", in_volts, given, response_key(kind)};
+    case ResponseKind::displacement:
+      break;
+  }
+  return {io::Quantity::displacement, "m", in_volts, given, response_key(kind)};
+}
+
+/// The column's own name where the file has names that its reader did not convert.
+std::string name_in(const io::Record& record, const std::string& name_or_number) {
+  const io::Format format = io::format_of(record.file);
+  if (format != io::Format::csv && format != io::Format::text && format != io::Format::mat) return {};
+  for (const std::string& name : record.names) {
+    if (name == name_or_number) return name;
+  }
+  for (std::size_t i = 0; i < record.names.size(); ++i) {
+    if (std::to_string(i + 1) == name_or_number) return record.names[i];
+  }
+  return {};
+}
+
+/// SI per number of a column whose name states its unit: ax_g, Force [kN]. 1 where the name states none.
+/// @throws InvalidInput with the key, if the name states another quantity than the file takes the column for
+double factor_of_name(const io::TomlFile& file, const std::string& key, const std::string& name, const ReadAs& as,
+                      std::vector<std::string>& notes) {
+  const ColumnGuess said = guess_by_name(name, 0);
+  if (said.volts > 0.0) {
+    if (as.in_volts) return 1.0;
+    throw file.reject(key, fmt::format("is a voltage by its name, and {} is missing", as.sensitivity),
+                      "It stands on the sensor's calibration sheet; rename the column if it holds " + as.unit);
+  }
+  const io::SiFactor si = io::parse_unit(said.unit);
+  if (si.is_ratio || si.quantity == io::Quantity::unknown) return 1.0;
+  if (si.quantity != as.quantity) {
+    throw file.reject(
+        key, fmt::format("is in {} by its name, and is read in {}", said.unit, as.unit),
+        as.quantity == io::Quantity::force || si.quantity == io::Quantity::force
+            ? "Are the columns of force and response exchanged?"
+            : "acquisition.response says what the sensor measures: acceleration, velocity or displacement");
+  }
+  if (as.in_volts) {
+    if (std::abs(as.given_factor / si.factor - 1.0) < 1e-3) return 1.0;
+    throw file.reject(key,
+                      fmt::format("is in {} by its name, where {} makes {:.4g} {} of a 1", said.unit, as.sensitivity,
+                                  as.given_factor, as.unit),
+                      "Leave the sensitivity out if the recorder used it already, or rename the column");
+  }
+  if (si.factor != 1.0) {
+    const std::string note = fmt::format("Columns {} are in {} by their name: converted with {:.6g} to {}.", name,
+                                         said.unit, si.factor, as.unit);
+    notes.push_back(note);
+  }
+  return si.factor;
+}
+
+Hit read_hit(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sensors& sensors,
+             std::vector<std::string>& notes) {
   const std::string row = fmt::format("hits[{}].", index);
   file.require(row + "file");
   const HitRow columns = read_row(file, row);
@@ -190,7 +266,8 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   }
   io::RecordOptions reading{.scale = sensors.scale};
   if (file.has(row + "time")) reading.time = column(file, row + "time");
-  const io::Record record = file.locate([&] { return io::read_record(path, reading); });
+  io::Record record = file.locate([&] { return io::read_record(path, reading); });
+  record.sample_rate_hz /= guess_by_name(name_in(record, reading.time), 0).si_per_unit;  // of times in ms
   notes.insert(notes.end(), record.notes.begin(), record.notes.end());
 
   Hit hit;
@@ -198,11 +275,21 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   hit.excitation = columns.excitation;
   hit.against_axis = columns.against_axis;
   hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz);
-  hit.force_n = record.column(columns.force) * sensors.force_factor;
+  std::vector<std::string> converted;
+  const auto factor = [&](const std::string& key, const std::string& column, const ReadAs& as) {
+    return factor_of_name(file, row + key, name_in(record, column), as, converted);
+  };
+  const double force =
+      factor("force", columns.force, {.in_volts = sensors.force_in_volts, .given_factor = sensors.force_factor});
+  hit.force_n = record.column(columns.force) * sensors.force_factor * force;
   for (const HitRow::Response& response : columns.responses) {
+    const double unit = factor("responses", response.column, response_read_as(kind, sensors));
     hit.responses.push_back({.dof = response.dof,
-                             .samples = record.column(response.column) * sensors.response_factor,
+                             .samples = record.column(response.column) * sensors.response_factor * unit,
                              .against_axis = response.against_axis});
+  }
+  for (const std::string& note : converted) {
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   }
   return hit;
 }
@@ -255,7 +342,8 @@ HitsFile read_hits(const io::TomlSource& source) {
   const Sensors sensors = read_sensors(file, out.options.response);
   file.locate([&] { out.options.validate(); });
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
-  for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
+  for (std::size_t i = 0; i < file.tables("hits"); ++i)
+    out.hits.push_back(read_hit(file, i, out.options.response, sensors, out.notes));
   file.done();
   std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   out.assumed = assumed_of(file, out.options.response, source.path);

@@ -71,17 +71,64 @@ TEST(HitsToml, TakesSensitivitiesInGAndRecordsInMillivolts) {
   EXPECT_NE(say("voltage_unit = \"mV\"\nresponse_mv_per_g = 100\n").find("acquisition.force_mv_per_n: is missing"),
             std::string::npos);
   EXPECT_NE(say("voltage_unit = \"kV\"\nforce_mv_per_n = 1\n").find("must be one of \"V\", \"mV\""), std::string::npos);
-  EXPECT_NE(say("response = \"velocity\"\nresponse_mv_per_g = 100\n").find("response_mv_per_g: is not known here"),
+  EXPECT_NE(say("response = \"velocity\"\nforce_mv_per_n = 1\nresponse_mv_per_g = 100\n")
+                .find("response_mv_per_g: is not known here"),
             std::string::npos);
+}
+
+/// What the file says of a record whose columns have these names.
+struct NamedColumns {
+  std::string time = "time_s", force = "force_n", response = "ax_m_per_s2", acquisition = {};
+
+  HitsFile read() const {
+    const test::Folder folder;
+    static_cast<void>(folder.file("a.csv", time + "," + force + "," + response + "\n0,0,1\n0.001,0.5,3\n0.002,0,5\n"));
+    return read_hits(folder.file("hits.toml", "[acquisition]\n" + acquisition +
+                                                  "[[hits]]\nfile = \"a.csv\"\ntime = \"" + time + "\"\nforce = \"" +
+                                                  force + "\"\nforce_direction = \"x\"\nresponses = { x = \"" +
+                                                  response + "\" }\n"));
+  }
+  std::string rejection() const {
+    return test::rejection([&] { static_cast<void>(read()); });
+  }
+};
+
+TEST(HitsToml, ConvertsColumnsWhoseNameStatesAnotherUnit) {
+  EXPECT_TRUE(NamedColumns{}.read().notes.empty());
+  const HitsFile in_g = NamedColumns{.response = "ax_g"}.read();
+  EXPECT_NEAR(in_g.hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12);
+  ASSERT_EQ(in_g.notes.size(), 1U);
+  EXPECT_NE(in_g.notes[0].find("ax_g are in g by their name"), std::string::npos);
+  EXPECT_DOUBLE_EQ(NamedColumns{.force = "Hammer [kN]"}.read().hits[0].force_n(1), 500.0);
+  EXPECT_NEAR(NamedColumns{.time = "time_ms"}.read().hits[0].sample_rate_hz, 1e6, 1e-3);
+  const NamedColumns in_um = {.response = "x_um", .acquisition = "response = \"displacement\"\n"};
+  EXPECT_DOUBLE_EQ(in_um.read().hits[0].responses[0].samples(1), 3e-6);
+}
+
+TEST(HitsToml, RejectsColumnsWhoseNameContradictsTheFile) {
+  const auto says = [](const NamedColumns& columns, const std::string& text) {
+    const std::string message = columns.rejection();
+    EXPECT_NE(message.find(text), std::string::npos) << message;
+  };
+  says({.acquisition = "response = \"velocity\"\n"}, "is in m/s^2 by its name, and is read in m/s");
+  says({.response = "x_mm"}, "is in mm by its name, and is read in m/s²");
+  says({.force = "ax_m_per_s2", .response = "force_n"}, "Are the columns of force and response exchanged?");
+  says({.force = "force_v"}, "is a voltage by its name, and acquisition.force_mv_per_n is missing");
+  says({.response = "ax_mv"}, "is a voltage by its name, and acquisition.response_mv_per_g is missing");
+  says({.response = "ax_g", .acquisition = "response_mv_per_g = 100\n"},
+       "is in g by its name, where acquisition.response_mv_per_g makes 98.07 m/s² of a 1");
+  // 1000 mV/g of a record in V is how a record in g is written.
+  NamedColumns in_g{.response = "ax_g", .acquisition = "response_mv_per_g = 1000\n"};
+  EXPECT_NEAR(in_g.read().hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12);
 }
 
 TEST(HitsToml, ListsWhatItAssumes) {
   const test::Folder folder;
-  static_cast<void>(folder.file("a.csv", record));
+  static_cast<void>(folder.file("a.csv", "time_s,force,ax\n0,0,1\n0.001,0.5,3\n0.002,0,5\n"));
   const auto keys = [&](const std::string& acquisition) {
     std::vector<std::string> out;
     for (const Assumption& one :
-         read_hits(folder.file("hits.toml", acquisition + "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\n"
+         read_hits(folder.file("hits.toml", acquisition + "[[hits]]\nfile = \"a.csv\"\nforce = \"force\"\n"
                                                           "force_direction = \"x\"\nresponses = { x = \"ax\" }\n"))
              .assumed) {
       EXPECT_EQ(one.file, "hits.toml");
@@ -138,7 +185,7 @@ TEST(HitsToml, RejectsInTheFilesWords) {
   EXPECT_NE(say("[[hits]]\nfile = \"none.csv\"\nforce = 2\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n")
                 .find("none.csv"),
             std::string::npos);
-  EXPECT_NE(say("[acquisition]\nfilter = 3\n" + row).find("filter"), std::string::npos);
+  EXPECT_NE(say("[acquisition]\nfilter = 3\nforce_mv_per_n = 1\n" + row).find("filter"), std::string::npos);
 }
 
 TEST(HitsToml, ReadsSoundWithItsScale) {

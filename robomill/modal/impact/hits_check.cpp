@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -92,6 +93,15 @@ void judge_pulse(const Hit& hit, const Pulse& pulse, const HitOptions& options, 
                                   pulse.peak_n, pulse.noise_n));
     return;
   }
+  // A steel tip touches for 0.02 ms, a sledge's soft one for 30 ms.
+  constexpr double briefest_s = 2e-6, longest_s = 0.1;
+  const double width_s = pulse.width / hit.sample_rate_hz;
+  if (width_s < briefest_s || width_s > longest_s) {
+    reasons.push_back(
+        fmt::format("the pulse is {:.3g} ms wide, and a hammer's lasts 0.02 to 30 ms: is the time in s and "
+                    "the sample rate in Hz?",
+                    1e3 * width_s));
+  }
   const double n = static_cast<double>(hit.force_n.size());
   if (hit.force_n(0) - pulse.offset_n > 0.1 * pulse.peak_n) {
     reasons.push_back("the record begins inside the pulse: set the trigger earlier");
@@ -144,6 +154,28 @@ void require_sound(const std::vector<Hit>& hits) {
     }
     for (std::size_t j = 0; j < i; ++j) require_same_sensors(hits[j], hits[i]);
   }
+}
+
+std::optional<std::string> repetition(const std::vector<Hit>& hits, std::size_t which) {
+  const Hit& hit = hits[which];
+  const auto in_both = [&](const Hit& earlier) {
+    return std::ranges::any_of(hit.responses, [&](const HitChannel& here) {
+      return std::ranges::any_of(earlier.responses, [&](const HitChannel& there) {
+        const bool asked_anew = earlier.excitation == hit.excitation && there.dof != here.dof;
+        return !asked_anew && there.samples == here.samples;
+      });
+    });
+  };
+  for (std::size_t i = 0; i < which; ++i) {
+    const Hit& earlier = hits[i];
+    if (earlier.force_n.size() != hit.force_n.size() || earlier.force_n != hit.force_n || !in_both(earlier)) continue;
+    if (earlier.excitation == hit.excitation) {
+      return fmt::format("is the hit of {} again, sample for sample: a hit counts once", earlier.file);
+    }
+    return fmt::format("is the hit of {} again, sample for sample, which was in {}: a hit has one direction",
+                       earlier.file, to_string(earlier.excitation));
+  }
+  return std::nullopt;
 }
 
 HitVerdict judge_hit(const Hit& hit, const Pulse& pulse, const HitOptions& options) {
