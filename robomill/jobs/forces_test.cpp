@@ -228,6 +228,27 @@ TEST(RunForces, AProgramThatDoesNotGiveItsStocksHeightNeedsOne) {
   EXPECT_NE(message.find("how high the material stands"), std::string::npos) << message;
 }
 
+// F in m/min and F in mm per tooth, a stock in another corner, a spindle that turns left.
+TEST(RunForces, SaysWhereAProgramDoesNotFitItsForces) {
+  const Folder folder;
+  const auto warned = [&](const std::string& old_text, const std::string& new_text, const std::string& stock,
+                          const std::string& text) {
+    std::string program = pocket_program;
+    program.replace(program.find(old_text), old_text.size(), new_text);
+    const ForcesResult result =
+        run_forces(folder.file("forces.toml", "cut = { feed_per_tooth_mm = 0.04 }\n" + pocket_tool + stock),
+                   folder.file("pocket.ngc", program), {});
+    return std::ranges::any_of(result.warnings,
+                               [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+  };
+  const std::string feed = "and cut.feed_per_tooth_mm is 0.04", none = "No block cuts", left = "the spindle turns left";
+  for (const std::string& text : {feed, none, left}) EXPECT_FALSE(warned("F1200", "F1200", "", text)) << text;
+  EXPECT_TRUE(warned("F1200", "F1.2", "", feed));
+  EXPECT_TRUE(warned("F1200", "F20000", "", feed));
+  EXPECT_TRUE(warned("M3", "M4", "", left));
+  EXPECT_TRUE(warned("M3", "M3", "[stock]\nkind = \"box\"\nmin_mm = [200, 200, -20]\nmax_mm = [300, 300, 0]\n", none));
+}
+
 // One meaning of "cuts" in summary, document and page; and a way through air lowers no figure of a block.
 TEST(RunForces, CountsTheSameBlocksEverywhere) {
   const Folder folder;

@@ -1,11 +1,16 @@
 #include "robomill/jobs/monitor.hpp"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
@@ -36,6 +41,29 @@ std::vector<bool> coupling_above(const stability::LobesProblem& problem, const s
   return {found.begin(), found.end()};
 }
 
+/// @throws InvalidInput where monitor.toml says other teeth than its lobes, or allows no speed of theirs
+void require_cut_of(const monitor::MonitorFile& file, const LobesFile& lobes) {
+  const auto reject = [&](const char* field, std::string rule, const char* hint) {
+    throw InvalidInput(
+        InvalidInput::Parts{.where = file.path.string(), .field = field, .rule = std::move(rule), .hint = hint});
+  };
+  const int teeth = lobes.problem.milling.tool.teeth;
+  if (file.options.teeth != 0 && file.options.teeth != teeth) {
+    reject("process.teeth",
+           fmt::format("is {}, and {} has a cutter of {}", file.options.teeth, lobes.path.string(), teeth),
+           "Correct the one that is wrong");
+  }
+  const auto [low, high] = lobes.options.spindle_speed_rad_per_s;
+  const double highest = file.act.highest_rad_per_s;
+  if (highest > 0.0 && (highest < low || file.act.lowest_rad_per_s > high)) {
+    reject("act.spindle_speed_rpm",
+           fmt::format("is {:.6g} to {:.6g} rpm, and the lobes of {} go from {:.6g} to {:.6g} rpm",
+                       file.act.lowest_rad_per_s / units::rpm, highest / units::rpm, lobes.path.string(),
+                       low / units::rpm, high / units::rpm),
+           "No speed is in both: none could be suggested");
+  }
+}
+
 /// The cut that process.lobes names: of a job as its plan has it, with its range and margin; else with the structure of
 /// its own, or with process.modes.
 LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Progress& progress) {
@@ -57,6 +85,7 @@ LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Pro
   }
   require_plane(cut);
   cut.validate();
+  require_cut_of(file, cut);
   add_assumed(basis.assumed, assumed_of(cut, CutUse::stability));
   return cut;
 }

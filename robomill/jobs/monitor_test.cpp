@@ -11,12 +11,14 @@
 namespace robomill::jobs {
 namespace monitor_test {
 
-live::AdviceBasis basis_of(const std::string& lobes, const test::Folder& folder) {
+live::AdviceBasis basis_of(const std::string& lobes, const test::Folder& folder, double highest_rpm = 9000.0,
+                           int teeth = 0) {
   monitor::MonitorFile file;
   file.options.sample_rate_hz = 10'240.0;
   file.lobes = folder.file("lobes.toml", lobes);
   file.act.lowest_rad_per_s = 3000.0 * units::rpm;
-  file.act.highest_rad_per_s = 9000.0 * units::rpm;
+  file.act.highest_rad_per_s = highest_rpm * units::rpm;
+  file.options.teeth = teeth;
   return read_advice_basis(file, Progress::none());
 }
 
@@ -53,8 +55,28 @@ TEST(ReadAdviceBasis, KnowsWhereModesCouple) {
                    "[coefficients]\ntangential_n_per_mm2 = 600\nradial_n_per_mm2 = 0\n"
                    "[dynamics]\nx = " +
                    mode + "y = " + mode + lobes + "spindle_speed_rpm = [50000, 60000]\naxial_depth_mm = [0, 2]\n",
-               folder);
+               folder, 60000.0);
   EXPECT_TRUE(couples(two, true));
+}
+
+TEST(ReadAdviceBasis, RejectsAMonitorOfAnotherCut) {
+  const test::Folder folder;
+  const std::string lobes =
+      "[tool]\nteeth = 3\ndiameter_mm = 10\n[cut]\ndirection = \"down\"\nradial_depth_mm = 2\nfeed_per_tooth_mm = "
+      "0.05\n"
+      "[coefficients]\ntangential_n_per_mm2 = 600\nradial_n_per_mm2 = 200\n[dynamics]\n"
+      "x = [{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]\nrigid_directions = [\"y\"]\n"
+      "[lobes]\ngrid = [5, 10]\nspindle_speed_rpm = [8000, 12000]\naxial_depth_mm = [0, 2]\n";
+  const auto say = [&](double highest_rpm, int teeth) {
+    return test::rejection([&] { static_cast<void>(basis_of(lobes, folder, highest_rpm, teeth)); });
+  };
+  EXPECT_EQ(basis_of(lobes, folder, 9000.0, 3).teeth, 3);
+  std::string said = say(9000.0, 2);
+  EXPECT_NE(said.find("process.teeth: is 2, and"), std::string::npos) << said;
+  EXPECT_NE(said.find("has a cutter of 3"), std::string::npos) << said;
+  said = say(6000.0, 3);
+  EXPECT_NE(said.find("act.spindle_speed_rpm: is 3000 to 6000 rpm"), std::string::npos) << said;
+  EXPECT_NE(said.find("go from 8000 to 12000 rpm"), std::string::npos) << said;
 }
 
 // Where no filter is stated lines may be folded about the sample rate, which then must be known.

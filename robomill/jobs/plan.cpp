@@ -10,6 +10,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
+#include "robomill/jobs/contradictions.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
@@ -281,6 +282,8 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, con
   if (result.job.forces.empty()) return;
   const bool along = !result.job.program.empty();
   ForcesFile file = read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution);
+  if (result.recommends()) append(result.warnings, contradictions(result.cut, file));
+  append(result.warnings, contradictions(result.job, file));
   if (!result.job.judges_blocks()) {
     result.forces = run_forces(std::move(file), result.job.program, cell, progress);
   } else {

@@ -239,6 +239,38 @@ void warn_of(const ProgramForces& program, std::vector<std::string>& warnings, I
                                    text, program.program.blocks[first].line, first + 1));
 }
 
+/// Where a program and forces.toml do not fit each other.
+void warn_of_program(const ForcesFile& file, const ProgramForces& out, std::vector<std::string>& warnings) {
+  const auto cuts = [](const BlockResult& row) { return row.force.cuts(); };
+  if (std::ranges::none_of(out.blocks, cuts)) {
+    warnings.emplace_back(
+        "No block cuts: the program does not touch the stock. Compare where the stock and the program stand in the "
+        "work "
+        "frame.");
+    return;
+  }
+  double least_m = HUGE_VAL, most_m = 0.0;
+  for (const BlockResult& row : out.blocks) {
+    if (!cuts(row)) continue;
+    least_m = std::min(least_m, row.force.feed_per_tooth_m);
+    most_m = std::max(most_m, row.force.feed_per_tooth_m);
+  }
+  constexpr double unlike = 10.0;
+  const double said_m = file.motion.feed_per_tooth_m;
+  if (said_m > 0.0 && (most_m > unlike * said_m || most_m * unlike < said_m)) {
+    warnings.push_back(fmt::format(
+        "The program feeds {:.3g} to {:.3g} mm per tooth where it cuts, and cut.feed_per_tooth_mm is {:.3g}: do "
+        "the program's F, the spindle speed and the teeth fit each other?",
+        least_m / units::mm, most_m / units::mm, said_m / units::mm));
+  }
+  warn_of(
+      out, warnings,
+      [&](const BlockResult& row) {
+        return cuts(row) && out.program.blocks[row.force.block].spindle == program::Spindle::counterclockwise;
+      },
+      "cut while the spindle turns left (M4), and a right-hand cutter was taken");
+}
+
 void warn_of_blocks(const ForcesFile& file, const ProgramForces& out, std::vector<std::string>& warnings) {
   using Settled = BlockResult::Settled;
   const auto of_force = [](auto is) { return [is](const BlockResult& row) { return is(row.force); }; };
@@ -246,6 +278,7 @@ void warn_of_blocks(const ForcesFile& file, const ProgramForces& out, std::vecto
           "run the shank into material");
   warn_of(out, warnings, of_force([](const BlockForce& f) { return f.rapid_in_material; }),
           "move through material in rapid");
+  warn_of_program(file, out, warnings);
   const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
   warn_of(out, warnings, of_force([&](const BlockForce& f) {
             const bool feeds = out.program.blocks[f.block].kind == program::Block::Kind::feed;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -121,6 +122,18 @@ bool read_radial_depth(io::TomlFile& file, double& radial_depth_m) {
   }
   return file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, radial_depth_m) ||
          file.number("cut.stepover_mm", "radial_depth_m", units::mm, radial_depth_m);
+}
+
+void require_full_width(const io::TomlFile& file, cutting::MillingDirection direction, double radial_depth_m,
+                        const cutting::FlatEndMill& tool, cutting::CutterKind kind) {
+  if (direction != cutting::MillingDirection::slot || kind == cutting::CutterKind::ball_end) return;
+  for (const char* key : {"cut.radial_depth_mm", "cut.stepover_mm"}) {
+    if (!file.has(key) || std::abs(radial_depth_m / tool.diameter_m - 1.0) < 1e-6) continue;
+    throw file.reject(key,
+                      fmt::format("contradicts cut.direction = \"slot\", whose width is the diameter, {:.6g} mm",
+                                  tool.diameter_m / units::mm),
+                      "A narrower cut is \"up\" or \"down\"; of a slot leave the radial depth out");
+  }
 }
 
 modal::MissingDirections read_missing_directions(io::TomlFile& file, const std::string& table, modal::ModalModel& own) {

@@ -23,6 +23,12 @@ bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction);
 /// cut.radial_depth_mm, or stepover_mm; false where both are absent.
 bool read_radial_depth(io::TomlFile& file, double& radial_depth_m);
 
+/// @throws InvalidInput at the radial depth, if the cut is a slot and the depth another than its full width. A ball
+/// end's
+///     slot may be narrower than its diameter.
+void require_full_width(const io::TomlFile& file, cutting::MillingDirection direction, double radial_depth_m,
+                        const cutting::FlatEndMill& tool, cutting::CutterKind kind = cutting::CutterKind::flat_end);
+
 /// equal_directions and rigid_directions of a table that holds the structure of a milling tool.
 /// @param own  modes of the table's own, which then know only the directions that it names; an empty list, y = [], says
 ///     that this one is rigid

@@ -50,6 +50,7 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   file.require("cut.spindle_speed_rpm");
   if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
   if (!radial && out.cut.direction != cutting::MillingDirection::slot) file.require("cut.radial_depth_mm");
+  require_full_width(file, out.cut.direction, out.cut.radial_depth_m, out.cutter.mill, out.cutter.kind);
   try {
     file.locate([&] {
       out.cut.validate(out.cutter);

@@ -129,6 +129,20 @@ TEST(ForcesToml, TheNameOfAMaterialStandsForItsNumbers) {
   EXPECT_NE(said.find("Did you mean 6061-t6?"), std::string::npos) << said;
 }
 
+TEST(ForcesToml, ASlotIsAsWideAsItsCutter) {
+  const Folder folder;
+  const auto slot = [&](const std::string& kind, const std::string& radial_depth_mm) {
+    static_cast<void>(read_forces(folder.file(
+        "forces.toml", "[tool]\nkind = \"" + kind + "\"\ndiameter_mm = 10\nteeth = 2\n[cut]\naxial_depth_mm = 1\n" +
+                           "direction = \"slot\"\nfeed_per_tooth_mm = 0.05\nspindle_speed_rpm = 3000\n" +
+                           "radial_depth_mm = " + radial_depth_mm + "\n[coefficients]\ntangential_n_per_mm2 = 700\n")));
+  };
+  const std::string said = rejection([&] { slot("flat-end", "4"); });
+  EXPECT_NE(said.find("cut.radial_depth_mm = 4 mm; contradicts cut.direction = \"slot\""), std::string::npos) << said;
+  EXPECT_NO_THROW(slot("flat-end", "10"));
+  EXPECT_NO_THROW(slot("ball-end", "6"));
+}
+
 // A power of the chip is taken at the mean chip of the cut where the file tells it: of an upright flat end.
 TEST(ForcesToml, APowerOfTheChipIsTakenAtTheCutsMeanChip) {
   const Folder folder;

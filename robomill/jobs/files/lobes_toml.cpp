@@ -94,6 +94,7 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   }
   const bool radial = read_radial_depth(file, milling.cut.radial_depth_m);
   if (!radial && !slot) file.require("cut.radial_depth_mm");
+  require_full_width(file, milling.cut.direction, milling.cut.radial_depth_m, cutter.mill, cutter.kind);
   const bool depth = file.number("cut.axial_depth_mm", "cut.axial_depth_m", units::mm, milling.cut.axial_depth_m);
   if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
     file.require("cut.axial_depth_mm", "The chart varies something else");
@@ -163,7 +164,14 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   const double diameter_m = milling.tool.diameter_m;
   if (entry) {
     file.locate([&] { milling.immersion.validate(); });
+    const double said_m = out.radial_depth_m;
     out.radial_depth_m = cutting::radial_depth(milling.immersion, diameter_m);
+    if (radial && std::abs(said_m - out.radial_depth_m) > 0.01 * diameter_m) {
+      throw file.reject("cut.entry_deg",
+                        fmt::format("contradicts the radial depth: to cut from entry to exit angle is {:.4g} mm deep",
+                                    out.radial_depth_m / units::mm),
+                        "Leave one of the two out");
+    }
     return;
   }
   if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
@@ -173,6 +181,7 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   } else if (!radial) {
     file.require("cut.radial_depth_mm");
   }
+  require_full_width(file, direction, out.radial_depth_m, milling.tool);
   file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
 }
 
@@ -361,6 +370,12 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
                         "must be \"feed\" beside workpiece_dynamics: a part does not lean with the tool");
     }
     check_spatial(file, out);
+  }
+  const double edges_m = cutter.cutting_height_m;
+  if (!spatial && file.has("tool.cutting_height_mm") && out.options.axial_depth_m[1] > edges_m * (1.0 + 1e-9)) {
+    throw file.reject("lobes.axial_depth_mm",
+                      fmt::format("goes deeper than the edges reach, {:.6g} mm", edges_m / units::mm),
+                      "tool.cutting_height_mm says how far up they reach");
   }
   if (out.drilling && out.options.axial_depth_m[1] > 0.5 * cutter.mill.diameter_m * (1.0 + 1e-12)) {
     throw file.reject("lobes.axial_depth_mm", "must end at the drill's radius at most",

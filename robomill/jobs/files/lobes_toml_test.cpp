@@ -460,6 +460,26 @@ TEST(LobesToml, NamesWhatACutInThreeDirectionsLacks) {
 }
 
 // What other programs and catalogues call it is answered with the key that is meant.
+TEST(LobesToml, RejectsWhatItsOwnKeysContradict) {
+  const test::Folder folder;
+  const auto say = [&](const std::string& old_text, const std::string& new_text) {
+    const auto path = folder.file("lobes.toml", with(old_text, new_text));
+    return test::rejection([&] { static_cast<void>(read_lobes(path)); });
+  };
+  const std::string cut = "direction = \"down\"\nradial_depth_mm = 1.2";
+  const std::array<std::string, 3> cases[] = {
+      {cut, "direction = \"slot\"\nradial_depth_mm = 1.2",
+       "contradicts cut.direction = \"slot\", whose width is the diameter"},
+      {cut, "entry_deg = 0\nexit_deg = 90\nradial_depth_mm = 1.2", "contradicts the radial depth"},
+      {"teeth = 2", "teeth = 2\ncutting_height_mm = 3", "goes deeper than the edges reach, 3 mm"}};
+  for (const auto& [old_text, new_text, expected] : cases) {
+    const std::string said = say(old_text, new_text);
+    EXPECT_NE(said.find(expected), std::string::npos) << said;
+  }
+  EXPECT_NO_THROW(
+      static_cast<void>(read_lobes(folder.file("lobes.toml", with("teeth = 2", "teeth = 2\ncutting_height_mm = 30")))));
+}
+
 TEST(LobesToml, AnswersSynonymsWithTheRightKey) {
   const test::Folder folder;
   const auto say = [&](const std::string& old_text, const std::string& new_text) {
