@@ -50,8 +50,8 @@ class Comparison {
     return fmt::format("[{:.6g}]", fmt::join(shown, ", "));
   }
   void add(const std::string& key, const std::string& a, const std::string& b) {
-    found.push_back(fmt::format("{} is {} in {} and {} in {}: one cut has one value. Correct the one that is wrong.", key,
-                                a, name_of(lobes_.path), b, name_of(forces_.path)));
+    found.push_back(fmt::format("{} is {} in {} and {} in {}: one cut has one value. Correct the one that is wrong.",
+                                key, a, name_of(lobes_.path), b, name_of(forces_.path)));
   }
 
   const LobesFile& lobes_;
@@ -106,10 +106,10 @@ std::vector<std::string> contradictions(const Job& job, const ForcesFile& forces
   const double edges_m = forces.cutter.cutting_height_m;
   const bool stated = forces.document && forces.document->has("tool.cutting_height_mm");
   if (!stated || !(job.recommend.max_axial_depth_m > edges_m * (1.0 + same_number))) return {};
-  return {fmt::format("tool.max_axial_depth_mm is {:.6g} in {}, and the edges reach {:.6g} mm up in {} "
-                      "(tool.cutting_height_mm): a deeper cut runs the shank into material.",
-                      job.recommend.max_axial_depth_m / units::mm, name_of(job.file), edges_m / units::mm,
-                      name_of(forces.path))};
+  return {fmt::format(
+      "tool.max_axial_depth_mm is {:.6g} in {}, and the edges reach {:.6g} mm up in {} "
+      "(tool.cutting_height_mm): a deeper cut runs the shank into material.",
+      job.recommend.max_axial_depth_m / units::mm, name_of(job.file), edges_m / units::mm, name_of(forces.path))};
 }
 
 }  // namespace robomill::jobs
