@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
@@ -444,6 +446,18 @@ void TomlFile::State::compare(const toml::node& node, const std::string& key, st
   if (const toml::table* table = node.as_table()) {
     for (const auto& [name, value] : *table)
       compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);
+    const auto number_of = [&](const char* name) {
+      const toml::node* found = table->get(name);
+      return found != nullptr ? finite_number(*found).value_or(0.0) : 0.0;
+    };
+    // Neither alone shows a mass in another unit: their stiffness m (2 pi f)^2 does.
+    const double rate = 2.0 * std::numbers::pi * number_of("frequency_hz"), mass_kg = number_of("modal_mass_kg");
+    const double n_per_um = 1e-6 * mass_kg * rate * rate;
+    if (const std::optional<Unusual> found = unusual_value("modal_stiffness_n_per_um", std::span(&n_per_um, 1))) {
+      out.push_back(
+          fmt::format("{}{}: {} is a mode of {:.3g} N/um by its mass and frequency, which {}. Is the mass in {}?",
+                      warning_label, where(&node), shown(key), n_per_um, found->rule, n_per_um > 1.0 ? "g" : "t"));
+    }
     return;
   }
   std::vector<double> values;

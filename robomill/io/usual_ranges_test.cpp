@@ -185,5 +185,21 @@ TEST(UsualRanges, AreSaidWithFileLineKeyAndValue) {
   EXPECT_EQ(notes, (std::vector<std::string>{"one", "two"}));
 }
 
+TEST(UsualRanges, TakeMassAndFrequencyOfAModeTogether) {
+  test::Folder folder;
+  const auto unusual = [&](const char* mass) {
+    return TomlFile(
+               folder.file("modes.toml", std::string("[dynamics]\nx = [{ frequency_hz = 700, damping_ratio = 0.03, "
+                                                     "modal_mass_kg = ") +
+                                             mass + " }]\n"))
+        .unusual();
+  };
+  EXPECT_TRUE(unusual("0.4").empty());
+  const std::vector<std::string> in_g = unusual("400");
+  ASSERT_EQ(in_g.size(), 1u);
+  EXPECT_NE(in_g[0].find("dynamics.x[1] is a mode of 7.74e+03 N/um"), std::string::npos) << in_g[0];
+  EXPECT_NE(in_g[0].find("in g?"), std::string::npos) << in_g[0];
+}
+
 }  // namespace usual_ranges_test
 }  // namespace robomill::io
