@@ -456,7 +456,7 @@ void TomlFile::State::compare(const toml::node& node, const std::string& key, st
     if (const std::optional<Unusual> found = unusual_value("modal_stiffness_n_per_um", std::span(&n_per_um, 1))) {
       out.push_back(
           fmt::format("{}{}: {} is a mode of {:.3g} N/um by its mass and frequency, which {}. Is the mass in {}?",
-                      warning_label, where(&node), shown(key), n_per_um, found->rule, n_per_um > 1.0 ? "g" : "t"));
+                      warning_label, where(&node), shown_key(key), n_per_um, found->rule, n_per_um > 1.0 ? "g" : "t"));
     }
     return;
   }
@@ -473,7 +473,7 @@ void TomlFile::State::compare(const toml::node& node, const std::string& key, st
   if (!found) return;
   out.push_back(fmt::format("{}{}", warning_label,
                             InvalidInput(InvalidInput::Parts{.where = where(&node),
-                                                             .field = shown(key),
+                                                             .field = shown_key(key),
                                                              .number = found->value,
                                                              .unit = unit_of_key(key),
                                                              .rule = found->rule,

@@ -63,12 +63,15 @@ RandomCut random_cut(Random& random, int seed) {
   // Of a corner's chip the cut in time knows the curvature too, f² cos² κ / 2 R beside f sin κ: little of small feeds.
   const double feed_mm = flat ? random.uniform(0.03, 0.15) : random.uniform(0.005, 0.01);
   const char* const directions[] = {"up", "down", "slot"};
-  out.cut = fmt::format("[cut]\ndirection = \"{}\"\nradial_depth_mm = {:.5g}\nfeed_per_tooth_mm = {:.4g}\n",
-                        directions[(seed / 2) % 3], random.uniform(0.1, 0.9) * diameter_mm, feed_mm);
+  const char* const direction = directions[(seed / 2) % 3];
+  out.cut = fmt::format("[cut]\ndirection = \"{}\"\nfeed_per_tooth_mm = {:.4g}\n", direction, feed_mm);
+  const double radial_mm = random.uniform(0.1, 0.9) * diameter_mm;
+  if (std::string(direction) != "slot") out.cut += fmt::format("radial_depth_mm = {:.5g}\n", radial_mm);
   out.coefficients = fmt::format(
       "[coefficients]\ntangential_n_per_mm2 = {:.5g}\nradial_n_per_mm2 = {:.5g}\ntangential_edge_n_per_mm = {:.4g}\n"
       "radial_edge_n_per_mm = {:.4g}\n",
-      random.uniform(500.0, 2000.0), random.uniform(100.0, 700.0), random.uniform(0.0, 30.0), random.uniform(0.0, 30.0));
+      random.uniform(500.0, 2000.0), random.uniform(100.0, 700.0), random.uniform(0.0, 30.0),
+      random.uniform(0.0, 30.0));
   if (!flat) out.coefficients += "axial_n_per_mm2 = 120\naxial_edge_n_per_mm = 3\n";
   out.dynamics = dynamics_of(random);
   if (!flat) out.dynamics += "z = [{ frequency_hz = 2000, damping_ratio = 0.03, modal_mass_kg = 2 }]\n";
@@ -110,12 +113,10 @@ void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, cons
   const ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
   const cutting::CuttingForce& force = forces.revolution->deflected.force;
   // Chips as a rigid cutter cuts them: vibration of teeth that differ, or that leave the cut, changes the mean.
-  const SimulateResult in_time = run_simulate({.lobes = lobes,
-                                               .point = at,
-                                               .options = {.seconds = 0.25,
-                                                           .sample_rate_hz = 20480.0,
-                                                           .loss_of_contact = false,
-                                                           .regeneration = false}});
+  const SimulateResult in_time = run_simulate(
+      {.lobes = lobes,
+       .point = at,
+       .options = {.seconds = 0.25, .sample_rate_hz = 20480.0, .loss_of_contact = false, .regeneration = false}});
   const LobesFile read = read_lobes(lobes);
   if (!read.problem.spatial) {
     const double torque_n_m = decision::mean_torque_of(read.problem.milling)(at.axial_depth_m);
@@ -140,7 +141,8 @@ TEST(OneCut, EveryVerbSaysTheSame) {
       continue;
     }
     const auto job = folder.file(
-        "job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[safety]\nspeed_window = 0\ndepth_margin = 0.4\n");
+        "job.toml",
+        "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[safety]\nspeed_window = 0\ndepth_margin = 0.4\n");
     const LobesFile read = read_milling(lobes);
     folder.file("modes.json", modal::modes_json(read.problem.dynamics));
     const PlanResult plan = run_job(job, 1);
@@ -154,8 +156,7 @@ TEST(OneCut, EveryVerbSaysTheSame) {
       expect_within(op.limit_depth_m, point.limit_depth_m, seed + ": limit");
       expect_within(op.margin, 1.0 - op.axial_depth_m / point.limit_depth_m, seed + ": margin");
     }
-    const ForcesResult forces =
-        run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
+    const ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
     const cutting::CuttingForce& force = forces.revolution->deflected.force;
     expect_within(op.torque_n_m, force.mean_torque_n_m, seed + ": mean torque");
     expect_within(op.power_w, force.power_w, seed + ": mean power");

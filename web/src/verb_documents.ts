@@ -225,7 +225,7 @@ export interface ToolRow {
   recommended: {
     spindle_speed_rpm: number;
     axial_depth_mm: number;
-    limit_depth_mm: Num;
+    window_limit_mm: Num;
     removal_rate_mm3_per_s: Num;
     limited_by: string;
   } | null;

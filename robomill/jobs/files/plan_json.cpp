@@ -119,7 +119,7 @@ Json operation_json(const decision::Operation& op) {
                {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
                {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
                {"limited_by", limited_by_text(op)},
-               {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
+               {"window_limit_mm", number(op.limit_depth_m / units::mm)},
                {"chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
                {"torque_n_m", number(op.torque_n_m)},
                {"power_w", number(op.power_w)},

@@ -47,7 +47,7 @@ Json recommended_json(const decision::Operation* op) {
   if (op == nullptr) return json;
   const Json all = operation_json(*op);
   for (const char* key :
-       {"spindle_speed_rpm", "axial_depth_mm", "limit_depth_mm", "removal_rate_mm3_per_s", "limited_by"}) {
+       {"spindle_speed_rpm", "axial_depth_mm", "window_limit_mm", "removal_rate_mm3_per_s", "limited_by"}) {
     json[key] = all[key];
   }
   return json;
