@@ -292,7 +292,7 @@ void warn_of_lowest(const CellFile& cell, ModesOfPosture& out) {
   if (lowest_hz >= 2.5 && lowest_hz <= 28.0) return;
   out.warnings.push_back(fmt::format(
       "{}: the arm's first natural frequency would be {:.3g} Hz; 5 to 25 Hz is usual of an arm of this reach. Check "
-      "robot.joint_stiffness_n_m_per_rad and the masses of the links",
+      "robot.joint_stiffness_n_m_per_rad and the masses of the links.",
       cell.path.string(), lowest_hz));
 }
 

@@ -36,8 +36,8 @@ struct SmoothJob {
   /// Check the trajectory for collisions where the cell has [geometry].
   bool check_collisions = true;
   std::optional<cutting::Cutter> cutter = {};  ///< for that check; not given: the shank stands for it
-  std::vector<double> near_deg = {};          ///< joints to begin near, of a job that reads its cell; empty: the cell's
-  path::SampleSink observe = {};               ///< takes the samples too, of the method asked for; time 0 begins anew
+  std::vector<double> near_deg = {};  ///< joints to begin near, of a job that reads its cell; empty: the cell's
+  path::SampleSink observe = {};      ///< takes the samples too, of the method asked for; time 0 begins anew
 };
 
 struct SmoothResult {

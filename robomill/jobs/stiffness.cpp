@@ -18,7 +18,7 @@ namespace {
 /// What is unusual about the loads, and about the stiffness that they give.
 void warn_of_loads(StiffnessResult& result) {
   const auto warn = [&](const std::string& text) {
-    result.cell.notes.push_back(fmt::format("{}{}: {}.", io::warning_label, result.loads.path.string(), text));
+    result.cell.notes.push_back(fmt::format("{}{}: {}", io::warning_label, result.loads.path.string(), text));
   };
   for (const std::string& text : robot::unusual_displacements(result.loads.loads)) warn(text);
   for (std::size_t k = 0; k < result.found.joints.size(); ++k) {
@@ -26,7 +26,7 @@ void warn_of_loads(StiffnessResult& result) {
     if (!joint.identifiable || result.cell.cell.arm.joints[k].prismatic) continue;
     const auto unusual = io::unusual_value("joint_stiffness_n_m_per_rad", std::span(&joint.stiffness, 1));
     if (unusual)
-      warn(fmt::format("joint {} comes out as {:.4g} N m/rad, which {}", k + 1, joint.stiffness, unusual->rule));
+      warn(fmt::format("joint {} comes out as {:.4g} N m/rad, which {}.", k + 1, joint.stiffness, unusual->rule));
   }
 }
 

@@ -70,7 +70,7 @@ std::vector<std::string> unusual_masses(const Arm& arm) {
   if (highest <= 1.001 * lowest) {
     out.push_back(fmt::format(
         "all links of the arm weigh {:.6g} kg; the links of an arm get lighter from base to flange. Such masses stand "
-        "in for others: natural frequencies and torques that follow from them are wrong",
+        "in for others: natural frequencies and torques that follow from them are wrong.",
         lowest));
   }
   const Density usual = usual_density(reach_m);
@@ -83,7 +83,7 @@ std::vector<std::string> unusual_masses(const Arm& arm) {
         sum_kg, usual.lowest * cube, usual.highest * cube, reach_m,
         density > 1e3 * usual.lowest     ? ". Are they in g?"
         : density < 1e-3 * usual.highest ? ". Are they in t?"
-                                         : ""));
+                                         : "."));
   }
   compare_inertias(arm, reach_m, out);
   return out;
@@ -108,7 +108,7 @@ std::vector<std::string> unusual_displacements(const std::vector<Load>& loads) {
   if (2 * against > forces && work < -0.05 * size) {
     out.push_back(fmt::format(
         "in {} of {} loads the point moved against the force, which no spring does. Are forces of the robot "
-        "on its surroundings given, or is an axis turned round? Forces count as they act on the robot",
+        "on its surroundings given, or is an axis turned round? Forces count as they act on the robot.",
         against, forces));
   }
   std::ranges::nth_element(stiffness_n_per_m,

@@ -230,7 +230,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   add_assumed(out.assumed, io::sample_values(source));
   std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   for (const std::string& text : robot::unusual_masses(out.cell.arm))
-    out.notes.push_back(fmt::format("{}{}: {}.", io::warning_label, out.path.string(), text));
+    out.notes.push_back(fmt::format("{}{}: {}", io::warning_label, out.path.string(), text));
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
     out.hybrid->tool_length_m = out.cell.tool_length_m;
