@@ -53,12 +53,12 @@ Recommendation choose(const stability::LobesProblem& problem, const stability::L
   options.mean_torque_n_m = mean_torque_of(milling);
   const stability::ForcedResponse response(problem);
   std::vector<DepthLimit> depths(limits.size());
-  if (finish.any()) progress.start("finishing depths", limits.size());
+  progress.start("forced vibration", limits.size());
   parallel_for(limits.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       progress.check();
       depths[i] = with_finish(limits[i], problem, response, options, finish);
-      if (finish.any()) progress.advance();
+      progress.advance();
     }
   });
   Recommendation result = recommend(depths, options, [&](double speed) {

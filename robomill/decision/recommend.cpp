@@ -180,6 +180,17 @@ double depth_of_torque_m(const std::function<double(double)>& mean_torque_n_m, d
   return low_m;
 }
 
+std::array<double, 2> spindle_range(const RecommendOptions& options) {
+  double from = options.min_spindle_speed_rad_per_s;
+  double to = options.max_spindle_speed_rad_per_s;
+  if (!options.spindle.empty()) {
+    from = std::max(from, options.spindle.front().spindle_speed_rad_per_s);
+    const double end = options.spindle.back().spindle_speed_rad_per_s;
+    to = to > 0.0 ? std::min(to, end) : end;
+  }
+  return {from, to};
+}
+
 void RecommendOptions::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");
   require_positive("radial_depth_m", radial_depth_m, "m");
@@ -216,7 +227,8 @@ Recommendation recommend(const std::vector<DepthLimit>& limits, const RecommendO
   }
   if (chosen.empty()) {
     result.reason =
-        "every spindle speed chatters at any depth, the spindle gives no torque, or forced vibration allows no depth";
+        "every spindle speed chatters at any depth, the spindle gives no torque, or surface error, deflection or "
+        "forced vibration allows no depth";
     return result;
   }
   std::sort(chosen.begin(), chosen.end(), better);

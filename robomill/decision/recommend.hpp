@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -74,6 +75,9 @@ struct RecommendOptions {
 
   ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };
+
+/// Lowest and highest speed of the spindle, within its curve where there is one [rad/s]; 0: not said.
+[[nodiscard]] ROBOMILL_API std::array<double, 2> spindle_range(const RecommendOptions& options);
 
 /// A speed and depth to cut at.
 struct Operation {

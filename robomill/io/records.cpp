@@ -62,14 +62,25 @@ std::optional<double> number_behind(std::string_view line, std::string_view word
   if (at == std::string_view::npos || (at > 0 && is_letter(line[at - 1]))) return std::nullopt;
   std::string_view rest = line.substr(at + word.size());
   if (!rest.empty() && is_letter(rest.front())) return std::nullopt;
-  const std::size_t begin = rest.find_first_of("0123456789.");
-  if (begin == std::string_view::npos) return std::nullopt;
-  unit = rest.substr(0, begin);  // "sample rate [kHz]: 25.6"
-  rest.remove_prefix(begin);
+  const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r:=;,\""), rest.size())); };
+  skip_blanks();
+  unit = {};
+  if (!rest.empty() && (rest.front() == '[' || rest.front() == '(')) {  // "sample rate [kHz]: 25.6"
+    const std::size_t close = rest.find_first_of("])");
+    if (close == std::string_view::npos) return std::nullopt;
+    unit = trimmed(rest.substr(1, close - 1));
+    rest.remove_prefix(close + 1);
+    skip_blanks();
+  }
   const std::size_t end = std::min(rest.find_first_not_of("0123456789.,e+-"), rest.size());
+  const std::string_view number = rest.substr(0, end);
+  // "51,200" is 51200 to some and 51.2 to others.
+  if (number.empty() || (number.find(',') != std::string_view::npos && number.size() - number.find(',') == 4)) {
+    return std::nullopt;
+  }
   const std::string_view behind = trimmed(rest.substr(end));
-  if (!behind.empty() && is_letter(behind.front())) unit = behind;
-  return parse_cell(rest.substr(0, end));
+  if (unit.empty()) unit = behind.substr(0, std::min(behind.find_first_of(" \t;,)]"), behind.size()));
+  return parse_cell(number);
 }
 
 /// The rate that the lines above the numbers state; 0: none.
@@ -86,11 +97,11 @@ double stated_rate_hz(std::string_view content) {
     std::string_view unit;
     for (const std::string_view word : rates) {
       const std::optional<double> value = number_behind(line, word, unit);
-      if (value && *value > 0.0) return unit.find("khz") != std::string_view::npos ? 1e3 * *value : *value;
+      if (value && *value > 0.0) return unit == "khz" ? 1e3 * *value : *value;
     }
     for (const std::string_view word : steps) {
       const std::optional<double> value = number_behind(line, word, unit);
-      const bool ms = unit.find("ms") != std::string_view::npos, us = unit.find("us") != std::string_view::npos;
+      const bool ms = unit == "ms", us = unit == "us";
       if (value && *value > 0.0) return (ms ? 1e3 : us ? 1e6 : 1.0) / *value;
     }
   }

@@ -117,8 +117,8 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"peaks_hz", 1, 50'000},
     // hammer hits
     {"sample_rate_hz", 100, 1e7},
-    {"force_mv_per_n", 0.05, 200},
-    {"response_mv_per_g", 0.5, 10'000},
+    {"force_mv_per_n", 0.05, 1020},
+    {"response_mv_per_g", 0.5, 1e7},
     {"response_mv_per_m_per_s2", 0.05, 1020},
     {"response_mv_per_m_per_s", 10, 1e7},
     {"response_mv_per_m", 1, 1e9},
@@ -133,19 +133,19 @@ constexpr std::array rows = std::to_array<UsualRange>({
     // arm and cell
     {"a_mm", 0.5, 5000},
     {"d_mm", 0.5, 5000},
-    {"alpha_deg", 5, 360, angles},
-    {"theta_offset_deg", 1, 360, angles},
+    {"alpha_deg", 1e-3, 360, angles},
+    {"theta_offset_deg", 1e-3, 360, angles},
     {"base_half_width_mm", 10, 5000},
     {"platform_half_width_mm", 10, 5000},
     {"platform_offset_mm", 1, 5000},
     {"base_offset_mm", 1, 5000},
     {"platform_to_flange_mm", 1, 5000},
     {"base_origin_mm", 5, 20'000, largest},
-    {"base_rotation_deg", 1, 360, angles},
+    {"base_rotation_deg", 1e-3, 360, angles},
     {"origin_mm", 5, 20'000, largest},
-    {"rotation_deg", 0.5, 360, angles},
+    {"rotation_deg", 1e-3, 360, angles},
     {"mount_origin_mm", 5, 2000, largest},
-    {"mount_rotation_deg", 0.5, 360, angles},
+    {"mount_rotation_deg", 1e-3, 360, angles},
     {"joints_deg", 0.5, 720, angles},
     {"start_joints_deg", 0.5, 720, angles},
     {"gamma_deg", 0.5, 360, any},
@@ -316,12 +316,13 @@ std::string hint_of(const UsualRange& row, std::string_view key, double value) {
   return {};
 }
 
-/// Whether a number is a multiple of 15° in radians, as somebody would write it, and no round number of degrees.
+/// Whether a number is a multiple of 15° in radians, from 45° on, as somebody would write it, and no round number of
+/// degrees. Frames that were measured are off by less.
 bool is_round_in_radians(double value) {
   constexpr double step = std::numbers::pi / 12.0;
   const double steps = std::round(std::abs(value) / step);
   const bool round_in_degrees = std::abs(2.0 * value - std::round(2.0 * value)) < 1e-9;
-  return steps >= 1.0 && steps <= 24.0 && !round_in_degrees && std::abs(std::abs(value) - steps * step) < 6e-3;
+  return steps >= 3.0 && steps <= 24.0 && !round_in_degrees && std::abs(std::abs(value) - steps * step) < 6e-3;
 }
 
 /// Angles none of which is above a full turn in radians, at least one of which is a round number of them; or several of

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "robomill/base/random.hpp"
@@ -90,11 +89,6 @@ std::string forces_text(const RandomCut& c, const stability::OperatingPoint& at)
          c.coefficients;
 }
 
-int count() {
-  const char* asked = std::getenv("ROBOMILL_SEEDS");
-  return asked != nullptr ? std::atoi(asked) : test::seeds(100);
-}
-
 void expect_within(double a, double b, const std::string& what) {
   EXPECT_NEAR(a, b, 0.01 * std::max(std::abs(a), std::abs(b)) + 1e-12) << what;
 }
@@ -130,7 +124,7 @@ void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, cons
 TEST(OneCut, EveryVerbSaysTheSame) {
   const Folder folder;
   Random random(17);
-  const int seeds = count();
+  const int seeds = test::seeds(100);
   for (int n = 0; n < seeds; ++n) {
     const std::string seed = fmt::format("seed {}", n);
     const RandomCut c = random_cut(random, n);

@@ -83,9 +83,10 @@ void warn_of_prediction(PlanResult& result) {
 void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
     const modal::HitsFile hits = modal::read_hits(result.job.hits);
-    append(result.notes, hits.notes);
+    std::vector<std::string> notes = hits.notes;
+    append(result.warnings, io::take_warnings(notes));
+    append(result.notes, notes);
     add_assumed(result.assumed, hits.assumed);
-    append_warnings(hits.notes, result.warnings);
     for (const modal::Hit& hit : hits.hits) {
       result.hit_directions.push_back(
           fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));

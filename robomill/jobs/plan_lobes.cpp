@@ -164,20 +164,15 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
 
 /// As many nodes a length as before.
 int nodes_for(int before, double old_length, double new_length) {
-  constexpr double most = 2000.0;
+  const double most = std::max(2000.0, static_cast<double>(before));
   return static_cast<int>(std::clamp(std::ceil(before * new_length / old_length), 2.0, most));
 }
 
 /// Speeds that the spindle has and the chart does not are searched too.
 void cover_spindle(PlanResult& result) {
-  const decision::RecommendOptions& machine = result.job.recommend;
-  double from = machine.min_spindle_speed_rad_per_s;
-  double to = machine.max_spindle_speed_rad_per_s;
-  if (!machine.spindle.empty()) {
-    from = std::max(from, machine.spindle.front().spindle_speed_rad_per_s);
-    const double end = machine.spindle.back().spindle_speed_rad_per_s;
-    to = to > 0.0 ? std::min(to, end) : end;
-  }
+  const std::array<double, 2> spindle = decision::spindle_range(result.job.recommend);
+  double from = spindle[0];
+  const double to = spindle[1];
   std::array<double, 2>& chart = result.cut.options.spindle_speed_rad_per_s;
   const std::array<double, 2> asked = chart;
   if (from <= 0.0) from = asked[0];
@@ -193,7 +188,7 @@ void cover_spindle(PlanResult& result) {
       "were "
       "searched.",
       result.cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
-      std::max(to, asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
+      (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
   if (from < low) text += " Slower ones were not.";
   result.notes.push_back(text);
 }

@@ -51,8 +51,10 @@ std::string limited_by_text(const decision::Operation& operation) {
     case decision::LimitedBy::deflection:
       return "the permitted deflection";
     case decision::LimitedBy::forced_vibration:
-      return fmt::format("forced vibration, whose amplitude of {:.3g} µm may be the feed per tooth at most, {:.3g} µm",
-                         operation.vibration.amplitude_m / units::um, operation.feed_per_tooth_m / units::um);
+      return fmt::format(
+          "forced vibration: within the speed window its amplitude, {:.3g} µm at this speed, may be the feed per tooth "
+          "at most, {:.3g} µm",
+          operation.vibration.amplitude_m / units::um, operation.feed_per_tooth_m / units::um);
   }
   return {};
 }

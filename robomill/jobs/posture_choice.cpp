@@ -49,6 +49,7 @@ path::PostureOptions posture_options(const CellFile& cell, const robot::Kinemati
   if (!cell.start_joints.empty()) out.start = six_of(cell.start_joints);
   if (machine.turns_about_axis()) out.home = home_of(cell, machine);
   if (cell.posture_asked) out.margin_for_home = 1.0;
+  out.home_asked = cell.posture_asked;
   return out;
 }
 
@@ -86,10 +87,13 @@ std::string posture_text(const path::PostureChoice& choice, int joints, const st
   const path::Resemblance& like = *choice.resemblance;
   if (like.known) {
     const std::string alike = parts_of(like, true), other = parts_of(like, false);
-    if (!alike.empty()) out += "; " + alike + " as at home";
+    if (!alike.empty()) out += "; " + alike + (like.asked ? " as asked" : " as at home");
     if (!other.empty()) out += (alike.empty() ? "; " : ", ") + other + " the other way";
   }
-  if (like.turns > 0) out += fmt::format("; {} whole turn{} from home", like.turns, like.turns > 1 ? "s" : "");
+  if (like.turns > 0) {
+    out += fmt::format("; {} whole turn{} from {}", like.turns, like.turns > 1 ? "s" : "",
+                       like.asked ? "what was asked" : "home");
+  }
   return out;
 }
 
@@ -98,14 +102,15 @@ std::vector<std::string> posture_notes(const path::PostureChoice& choice) {
   if (choice.resemblance) {
     const path::Resemblance& like = *choice.resemblance;
     if (const std::string other = parts_of(like, false); !other.empty()) {
-      out.push_back(
-          fmt::format("The {} stand{} the other way than at home: as at home the program does not go through with room "
-                      "to the limits. Move the arm there with care, or ask for another posture by --posture.",
-                      other, other.find(' ') == std::string::npos ? "s" : ""));
+      const std::string stands = fmt::format("The {} stand{}", other, other.find(' ') == std::string::npos ? "s" : "");
+      out.push_back(stands + (like.asked ? " the other way than asked: as asked the program does not go through."
+                                         : " the other way than at home: as at home the program does not go through "
+                                           "with room to the limits. Move the arm there with care, or ask for another "
+                                           "posture by --posture."));
     }
     if (like.turns > 0) {
-      out.push_back(fmt::format("Joints are wound by {} whole turn{} from home: mind cables and hoses.", like.turns,
-                                like.turns > 1 ? "s" : ""));
+      out.push_back(fmt::format("Joints are wound by {} whole turn{} from {}: mind cables and hoses.", like.turns,
+                                like.turns > 1 ? "s" : "", like.asked ? "what was asked" : "home"));
     }
   }
   if (const std::string near = path::singularity_text(choice.at_margin); !near.empty() && choice.margin.joint < 0) {

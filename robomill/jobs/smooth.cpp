@@ -277,7 +277,7 @@ void note_approach(const Bench& bench, const robot::CollisionChecker& checker, c
                    std::vector<std::string>& notes) {
   const std::vector<double>& home = bench.cell.start_joints;
   const auto joints = static_cast<Eigen::Index>(bench.cell.cell.arm.joints.size());
-  if (static_cast<Eigen::Index>(home.size()) != joints) return;
+  if (static_cast<Eigen::Index>(home.size()) != joints || bench.cell.posture_asked) return;
   const Eigen::VectorXd from = Eigen::Map<const Eigen::VectorXd>(home.data(), joints);
   const robot::MoveClearance move = checker.check_move(from, first.head(joints), look_step_m(*bench.cell.geometry));
   if (move.clearance.status == robot::Clearance::Status::clear) return;

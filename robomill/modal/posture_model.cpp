@@ -211,7 +211,7 @@ class PostureModel::Calibrated final : public Source {
   /// Where one axis alone was measured, nothing shows what the covariance of an unmeasured one is worth.
   static constexpr double scale_without_evidence = 3.0;
   static constexpr double largest_scale = 10.0;  ///< of deviations
-  /// The calibration takes up about half of what its model lacks: simulated arms whose spindle gives way along its
+  /// The calibration takes up about half of what its model lacks: simulated arms whose spindle deflects along its
   /// axis.
   static constexpr double taken_up = 2.0;
 

@@ -84,7 +84,7 @@ TEST(PostureModel, PredictsPosturesThatWereNotMeasured) {
   }
 }
 
-/// What a spindle that gives way along its axis adds to every receptance of the tip, in base axes: a a^T / (k - m w^2 +
+/// What a spindle that deflects along its axis adds to every receptance of the tip, in base axes: a a^T / (k - m w^2 +
 /// i w c). The arm's model has no such coordinate.
 void add_axial_mode(const testing::SimulatedArm& arm, const Eigen::VectorXd& joints, double stiffness_n_per_m,
                     double frequency_hz, FrfSet& frfs) {
@@ -111,7 +111,7 @@ Eigen::Vector3d direct_errors(const FrfSet& truth, const FrfSet& predicted) {
   return out;
 }
 
-// Hits along x and y alone. On half of the arms the spindle gives way along its axis, which the model cannot follow: zz
+// Hits along x and y alone. On half of the arms the spindle deflects along its axis, which the model cannot follow: zz
 // is then up to 80 % off where the axis is nearly vertical.
 TEST(PostureModel, StatesHowFarAnAxisThatNobodyHitIsOff) {
   const int arms = test::seeds(10);

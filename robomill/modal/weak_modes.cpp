@@ -64,7 +64,7 @@ ModeShare share_of(const ModalModel& model, std::size_t k, const FrfSet& frfs, c
     const Frf* const whole = fitted.find(frf.name);
     if (part == nullptr || whole == nullptr) continue;
     const double size = mean_square(part->receptance, peak);
-    if (!(size > 0.0)) continue;
+    if (!(size > 0.0) || !(mean_square(frf.receptance, peak) > 0.0)) continue;
     share.of_frf = std::max(share.of_frf, std::sqrt(size / mean_square(frf.receptance, peak)));
     const double scatter = scatter_square(whole->receptance - frf.receptance, wide);
     share.of_scatter = std::max(share.of_scatter, std::sqrt(size / scatter));

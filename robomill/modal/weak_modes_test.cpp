@@ -198,7 +198,7 @@ TEST(ModalStiffness, IsThatOfTheMassOnItsSpring) {
     model.modes[0].right = turn * model.modes[0].right;
     const ModalStiffness found = modal_stiffness(model, 0);
     EXPECT_NEAR(found.mass_kg, mode.modal_mass_kg, 1e-12 * mode.modal_mass_kg);
-    // At rest the tip gives way by 1 / k in the direction in which the mode moves.
+    // At rest the tip deflects by 1 / k in the direction in which the mode moves.
     const Eigen::Vector2d along = turn * Eigen::Vector2d::UnitY();
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(1);
     const FrfSet at_rest = synthesize(model, still);

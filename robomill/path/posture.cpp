@@ -376,6 +376,7 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
     const robot::Position6& start = out.posture.start;
     const Walk whole = walk(kinematics, head, along, out.posture.gamma_rad, start, roughly);
     out.resemblance = resemblance(kinematics, *options.home, start, whole.low, whole.high);
+    out.resemblance->asked = options.home_asked;
   };
   if (all.empty()) {
     const robot::Position6 near = options.start.value_or(robot::Position6::Zero());

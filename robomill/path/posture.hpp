@@ -19,6 +19,7 @@ struct ROBOMILL_API PostureOptions {
   /// Joints that the machine should resemble: of the ways that go through well, one with this configuration of
   /// shoulder, elbow and wrist, few whole turns and little way from here. Not given: the largest margin alone counts
   std::optional<robot::Position6> home = {};
+  bool home_asked = false;        ///< it is no home but where the user wants to begin: see Resemblance::asked
   double margin_for_home = 0.25;  ///< in [0, 1]; share of the largest margin that may be given up for nearness to home
   bool free_gamma = false;        ///< gamma may turn along the way even where a constant one would do
   int gammas = 72;                ///< >= 4; tried in a full turn
@@ -40,6 +41,7 @@ struct Margin {
 
 /// How a position stands to home.
 struct Resemblance {
+  bool asked = false;                                ///< to a posture that was asked for, in home's place
   bool known = false;                                ///< the configurations of both are
   bool shoulder = true, elbow = true, wrist = true;  ///< as at home; true where home stands between two ways
   int turns = 0;                                     ///< whole turns of all joints that bring them nearer to home

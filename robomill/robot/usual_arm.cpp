@@ -18,7 +18,7 @@ struct Density {
 };
 
 Density usual_density(double reach_m) {
-  return reach_m >= long_reach_m ? Density{8.0, 150.0} : Density{8.0, 300.0};
+  return reach_m >= long_reach_m ? Density{5.0, 150.0} : Density{5.0, 300.0};
 }
 
 std::vector<double> masses_of(const Arm& arm) {

@@ -19,9 +19,8 @@ namespace robomill::robot {
 /// little or too much together for the arm's reach, and a moment of inertia that does not go with its link's mass.
 /// Nothing of an arm without masses.
 ///
-/// The moving mass is compared with 8 to 150 kg/m^3 of the reach cubed, from 1.3 m on, and with 8 to 300 kg/m^3 below.
-/// Makers' arms weigh 15 to 170 kg per cubic metre of their reach cubed, of 1.3 m reach and more (UR10e 15, KR 210
-/// R2700 54, KR 120 R2500 67, IRB 7600 147, M-2000iA/1200 166), and up to 260 below (Meca500); base included.
+/// The moving mass is compared with 5 to 150 kg/m^3 of the reach cubed, from 1.3 m on, and with 5 to 300 kg/m^3 below;
+/// what makers' arms have is in robot/README.md.
 [[nodiscard]] ROBOMILL_API std::vector<std::string> unusual_masses(const Arm& arm);
 
 /// What is unusual about measured displacements: that they go against their loads, or how stiff the arm would be at the

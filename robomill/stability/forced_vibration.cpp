@@ -86,7 +86,7 @@ double greatest(const Eigen::Vector2cd& q) {
 /// Half the peak to peak of Σ 2 Re(q_j e^{i(j+1)t}), in the direction in which it is greatest.
 double half_width(const std::vector<Eigen::Vector2cd>& q) {
   constexpr int directions = 36;  // within cos 2.5° = 0.1 %
-  const int samples = std::clamp(8 * static_cast<int>(q.size()), 64, 2048);
+  const int samples = std::clamp(8 * static_cast<int>(q.size()), 64, 4800);
   std::vector<Eigen::Vector2d> path(static_cast<std::size_t>(samples), Eigen::Vector2d::Zero());
   for (int s = 0; s < samples; ++s) {
     const Complex turn = std::polar(1.0, units::revolution * s / samples);
@@ -141,7 +141,8 @@ ForcedVibration ForcedResponse::at(const OperatingPoint& point) const {
   double highest = 0.0;
   for (const Resonance& r : response_.resonances()) highest = std::max(highest, r.frequency_rad_per_s);
   constexpr int most = 600;
-  const int count = std::clamp(static_cast<int>(2.5 * highest / base) + 1, 12 * milling_.tool.teeth / step, most);
+  const int count =
+      std::min(most, std::max(static_cast<int>(2.5 * highest / base) + 1, 12 * milling_.tool.teeth / step));
   const std::vector<Eigen::Vector2cd> force = force_harmonics(milling_, point.axial_depth_m, step, count);
   std::vector<Eigen::Vector2cd> q(force.size());
   std::size_t strongest = 0;

@@ -125,7 +125,7 @@ void add_choice(const CellCheck& check, const path::PostureChoice& choice, Json&
   out["margin"] = io::number(choice.margin.least);
   out["posture"] = path::posture_object(choice, check.joints, check.prismatic);
   out["margin_joint"] = choice.margin.joint < 0 ? io::Json() : io::Json(choice.margin.joint + 1);
-  if (!turns || gamma_rad.empty()) {
+  if (check.cell.hybrid || gamma_rad.empty()) {
     out["gamma_deg"] = nullptr;
     return;
   }

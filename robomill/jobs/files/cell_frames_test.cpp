@@ -145,18 +145,13 @@ void expect_same(const Physics& a, const Physics& b, int seed) {
   EXPECT_NEAR(a.distance_m, b.distance_m, 1e-6) << "seed " << seed;
 }
 
-int count() {
-  const char* asked = std::getenv("ROBOMILL_SEEDS");
-  return asked != nullptr ? std::atoi(asked) : test::seeds(100);
-}
-
 // Weight pulls along -z of the base: a set-up that is turned about z and moved is the same. So is a flange that is said
 // to stand elsewhere along its axis, with mount, payload and spindle moved back; and a mount that takes over a part of
 // the tool's length.
 TEST(CellFrames, OneSetUpInOtherFramesIsTheSamePhysics) {
   const Folder folder;
   Random random(11);
-  const int seeds = count();
+  const int seeds = test::seeds(100);
   for (int seed = 0; seed < seeds; ++seed) {
     Arrangement one;
     one.base = Eigen::Isometry3d(Eigen::AngleAxisd(pi, Eigen::Vector3d::UnitX()));

@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -29,7 +30,9 @@ void load_posture(LobesFile& file, Progress& progress) {
   file.problem.dynamics = posture->prediction.modes;
   // An upright cut in the plane of base x and y asks for nothing of base z.
   const bool along_z = file.problem.in_three_directions() || file.posture_axes != PostureAxes::base;
-  std::ranges::move(posture_warnings(*posture, {true, true, along_z}), std::back_inserter(file.notes));
+  for (const std::string& text : posture_warnings(*posture, {true, true, along_z})) {
+    file.notes.push_back(fmt::format("{}{}", io::warning_label, text));
+  }
   file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
   add_assumed(file.assumed, posture->assumed);
   constexpr double noticed_rad = 5.0 * units::deg;

@@ -61,10 +61,10 @@ void take_plan(LobesFile& cut, const PlanResult& structure) {
   cut.drop_dynamics();
   load_dynamics(cut);
   cut.problem.dynamics = structure.model;
-  const decision::RecommendOptions& limits = structure.job.recommend;
   std::array<double, 2>& range = cut.options.spindle_speed_rad_per_s;
-  const double low = limits.min_spindle_speed_rad_per_s > 0.0 ? limits.min_spindle_speed_rad_per_s : range[0];
-  const double high = limits.max_spindle_speed_rad_per_s > 0.0 ? limits.max_spindle_speed_rad_per_s : range[1];
+  const std::array<double, 2> spindle = decision::spindle_range(structure.job.recommend);
+  const double low = spindle[0] > 0.0 ? spindle[0] : range[0];
+  const double high = spindle[1] > 0.0 ? spindle[1] : range[1];
   if (high > low) range = {low, high};
   add_assumed(cut.assumed, structure.assumed);
   cut.notes.insert(cut.notes.end(), structure.warnings.begin(), structure.warnings.end());

@@ -94,8 +94,8 @@ class Acquisition {
                    std::string_view usual) {
     if (column.volts > 0.0 || sound) {
       set(key, std::string(usual), "of the sensor's calibration sheet", to_give);
-    } else if (column.si_per_unit != 1.0) {
-      // What a 1 of the record is, as if it were a voltage.
+    } else if (column.si_per_unit != 1.0 || io::setting_of(text_, "acquisition.voltage_unit")) {
+      // What a 1 of the record is, as if it were a voltage; beside one in volts that of a column in SI counts too.
       set(key, fmt::format("{:.6g}", record_mv * unit / column.si_per_unit),
           fmt::format("guessed from the unit {}, no voltage: check", column.unit));
     }

@@ -34,7 +34,7 @@ struct HeldOut {
                                const Beginning& beginning, int axis, Progress& progress);
 
 /// What the measurements have beyond the model: a receptance G(s) that moves with the flange, symmetric, the same in
-/// all postures. A spindle that gives way along its axis makes one. In posture p, with R_p the flange's axes in B,
+/// all postures. A spindle that deflects along its axis makes one. In posture p, with R_p the flange's axes in B,
 ///     H_measured - H_model = R_p G R_pᵀ + noise,
 /// line by line a linear problem of six unknowns, with a prior deviation of each of the size of the receptance, so that
 /// what no posture shows stays as unknown as that.

@@ -174,8 +174,8 @@ std::string without_comments(std::string_view line) {
   std::string out;
   int depth = 0;
   for (const char c : line) {
-    if (c == ';' && out.find_first_not_of(' ') != std::string::npos) break;
-    const bool comment = c == '(' && (out.empty() || out.back() == ' ');
+    if (c == ';') break;
+    const bool comment = c == '(';
     if (comment || (c == '(' && depth > 0)) ++depth;
     if (depth == 0) out += c;
     if (c == ')' && depth > 0) --depth;

@@ -145,18 +145,33 @@ void require_tree(const std::string& content, const std::string& where) {
   }
 }
 
-/// What is taken for a URDF and is none. A URDF that xacro wrote may still declare its namespace.
-void require_no_other_description(std::string_view content, const std::string& where) {
+/// The text with comments as blanks, line for line.
+std::string without_comments(std::string_view content) {
+  std::string out(content);
+  for (std::size_t at = out.find("<!--"); at != std::string::npos; at = out.find("<!--", at)) {
+    const std::size_t end = std::min(out.find("-->", at), out.size());
+    for (; at < end; ++at) {
+      if (out[at] != '\n') out[at] = ' ';
+    }
+  }
+  return out;
+}
+
+/// What is taken for a URDF and is none. A URDF that xacro wrote may still declare its namespace and hold lines of it
+/// in comments; a URDF for MuJoCo has an element of its name.
+void require_no_other_description(std::string_view whole, const std::string& where) {
+  const std::string content = without_comments(whole);
   constexpr const char* as_urdf = "Write it as URDF";
   const std::size_t xacro = content.find("<xacro:"), value = content.find("${");
-  if (xacro != std::string_view::npos || value != std::string_view::npos) {
+  if (xacro != std::string::npos || value != std::string::npos) {
     const auto line = 1 + std::ranges::count(content.substr(0, std::min(xacro, value)), '\n');
     throw InvalidInput(
         fmt::format("{}:{}", where, line), "is xacro, from which a URDF is made, and no URDF yet",
         "Write it out with the tool of ROS: xacro FILE.xacro > FILE.urdf, of a macro the file that uses it");
   }
   for (const auto& [begin, name] : {std::pair{"<sdf", "SDF (Gazebo)"}, {"<mujoco", "MJCF (MuJoCo)"}}) {
-    if (content.find(begin) != std::string_view::npos) {
+    const std::size_t robot = content.find("<robot");
+    if (content.find(begin) < robot) {
       throw InvalidInput(where, fmt::format("is {}, which is not read", name), as_urdf);
     }
   }
