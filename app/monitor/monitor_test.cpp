@@ -65,7 +65,7 @@ TEST_F(MonitorVerb, NamesTheModeAndABetterSpeed) {
 TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   wav("rec.wav", cut(6.0, true));
   folder_.file("lobes.toml",
-               "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
+               "[tool]\nteeth = 2\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
                "feed_per_tooth_mm = 0.01\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n"
                "[dynamics]\nx = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
                "y = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"

@@ -177,7 +177,7 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
   out.direction = direction;
   if (direction == cutting::MillingDirection::slot) {
-    out.radial_depth_m = diameter_m;  // whatever step-over the file says: it has no neighbour
+    if (!radial) out.radial_depth_m = diameter_m;
   } else if (!radial) {
     file.require("cut.radial_depth_mm");
   }
