@@ -15,6 +15,7 @@
 #include "robomill/jobs/files/cell_check_json.hpp"
 #include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/robot/choose.hpp"
+#include "robomill/robot/euler.hpp"
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
@@ -48,16 +49,16 @@ const CellStand& named(const CellCheck& check, const std::string& name) {
 // R is made again of its angles, also where the second one is a right angle.
 TEST(CellCheck, NamesRotationsByThreeAngles) {
   Random random(1);
-  const auto turned = [](const Euler& angles) {
+  const auto turned = [](const robot::Euler& angles) {
     return Eigen::Matrix3d(Eigen::AngleAxisd(angles.a_rad, Eigen::Vector3d::UnitZ()) *
                            Eigen::AngleAxisd(angles.b_rad, Eigen::Vector3d::UnitY()) *
                            Eigen::AngleAxisd(angles.c_rad, Eigen::Vector3d::UnitX()));
   };
   for (int k = 0; k < 300; ++k) {
-    Euler angles{.a_rad = random.uniform(-arms::pi, arms::pi), .c_rad = random.uniform(-arms::pi, arms::pi)};
+    robot::Euler angles{.a_rad = random.uniform(-arms::pi, arms::pi), .c_rad = random.uniform(-arms::pi, arms::pi)};
     angles.b_rad = k % 3 == 0 ? (k % 2 == 0 ? 0.5 : -0.5) * arms::pi : random.uniform(-1.5, 1.5);
     const Eigen::Matrix3d turn = turned(angles);
-    EXPECT_LT((turned(euler_of(turn)) - turn).norm(), 1e-8) << k;
+    EXPECT_LT((turned(robot::euler_of(turn)) - turn).norm(), 1e-8) << k;
   }
 }
 
@@ -192,7 +193,7 @@ TEST(CellCheck, TellsWhereATurnAboutTheToolWouldDo) {
 
 /// The cell with the workpiece where a proposal puts it, as it is printed.
 std::string moved(const Proposal& proposal, const std::string& robot = "") {
-  const Euler turn = euler_of(proposal.placement.workpiece.linear());
+  const robot::Euler turn = robot::euler_of(proposal.placement.workpiece.linear());
   const Eigen::Vector3d origin = proposal.placement.workpiece.translation() / units::mm;
   return kr210(
       fmt::format("origin_mm = [{:.3f}, {:.3f}, {:.3f}]\nrotation_deg = [{:.4f}, {:.4f}, {:.4f}]\n", origin.x(),

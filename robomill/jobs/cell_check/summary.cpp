@@ -11,6 +11,7 @@
 #include "robomill/jobs/cell_check/shown.hpp"
 #include "robomill/jobs/posture_choice.hpp"
 #include "robomill/jobs/summary_parts.hpp"
+#include "robomill/robot/euler.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -35,7 +36,7 @@ std::string vector_text(const Eigen::Ref<const Eigen::VectorXd>& values, double 
 }
 
 std::string euler_text(const Eigen::Matrix3d& turn) {
-  const Euler angles = euler_of(turn);
+  const robot::Euler angles = robot::euler_of(turn);
   return vector_text(Eigen::Vector3d(angles.a_rad, angles.b_rad, angles.c_rad), units::deg, 3);
 }
 
@@ -177,7 +178,7 @@ void add_proposals(std::string& out, const CellCheck& check) {
   if (check.placement.works()) return;
   if (check.proposals.empty()) append(out, "\nNo workpiece pose was found nearby that serves.\n");
   for (const Proposal& proposal : check.proposals) {
-    const Euler turn = euler_of(proposal.placement.workpiece.linear());
+    const robot::Euler turn = robot::euler_of(proposal.placement.workpiece.linear());
     append(out, "\nproposal   shift {} mm, turn {}° about z:\n", vector_text(proposal.shift_m, units::mm, 0),
            decimal(proposal.turn_rad, units::deg, 0, true));
     append(out, "  origin_mm = [{}]\n  rotation_deg = [{}]\n",

@@ -7,6 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/decision/recommend.hpp"
 #include "robomill/jobs/decide/outcome.hpp"
 #include "robomill/jobs/program_forces.hpp"
 
@@ -95,13 +96,7 @@ void BlockModel::set_search() {
   search_.ramp_rad_per_s2 = options.goal == Goal::time ? options.spindle_ramp_rad_per_s2 : 0.0;
   search_.speed_step_rad_per_s = 10.0 * units::rpm;
   search_.feed_step_m_per_s = units::mm / units::minute;
-  double low = machine.min_spindle_speed_rad_per_s;
-  double high = machine.max_spindle_speed_rad_per_s;
-  if (!machine.spindle.empty()) {
-    low = std::max(low, machine.spindle.front().spindle_speed_rad_per_s);
-    const double last = machine.spindle.back().spindle_speed_rad_per_s;
-    high = high > 0.0 ? std::min(high, last) : last;
-  }
+  const auto [low, high] = decision::spindle_range(machine);
   const auto [slowest, fastest] =
       std::ranges::minmax(units().stretches, {}, &decision::ProgramStretch::programmed_spindle_speed_rad_per_s);
   const double about_low = (1.0 - default_speed_range) * slowest.programmed_spindle_speed_rad_per_s;

@@ -7,6 +7,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/cell_check/shown.hpp"
 #include "robomill/path/files/smooth_object.hpp"
+#include "robomill/robot/euler.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -60,7 +61,7 @@ Json by_joint(const CellCheck& check, const robot::Position6& values) {
 }
 
 Json pose_json(const Eigen::Isometry3d& pose) {
-  const Euler turn = euler_of(pose.linear());
+  const robot::Euler turn = robot::euler_of(pose.linear());
   const Eigen::Quaterniond quaternion(pose.linear());
   const Eigen::AngleAxisd about(pose.linear());
   const double sign = quaternion.w() < 0.0 ? -1.0 : 1.0;
@@ -114,7 +115,7 @@ Json miss_json(const CellCheck& check, const Miss& miss) {
 
 /// origin_mm and rotation_deg as a cell has them.
 Json workpiece_json(const Eigen::Isometry3d& workpiece) {
-  const Euler turn = euler_of(workpiece.linear());
+  const robot::Euler turn = robot::euler_of(workpiece.linear());
   return {{"origin_mm", lengths(workpiece.translation())},
           {"rotation_deg", degrees(turn.c_rad, turn.b_rad, turn.a_rad)}};
 }

@@ -4,6 +4,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/robot/euler.hpp"
 
 namespace robomill::path {
 namespace {
@@ -46,13 +47,9 @@ void JointDialect::add_assumed_load(const EndEffector& end, std::vector<std::str
 }
 
 std::string JointDialect::euler_pose(const Eigen::Isometry3d& frame) {
-  const Eigen::Matrix3d r = frame.linear();
-  const double b = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
-  const bool upright = std::hypot(r(0, 0), r(1, 0)) < 1e-9;  // A and C turn about one axis: all of it is given to A
-  const double a = upright ? std::atan2(-r(0, 1), r(1, 1)) : std::atan2(r(1, 0), r(0, 0));
-  const double c = upright ? 0.0 : std::atan2(r(2, 1), r(2, 2));
+  const robot::Euler turn = robot::euler_of(frame.linear());
   return three(frame.translation(), units::mm, "X {:.3f},Y {:.3f},Z {:.3f},") +
-         three({a, b, c}, units::deg, "A {:.4f},B {:.4f},C {:.4f}");
+         three({turn.a_rad, turn.b_rad, turn.c_rad}, units::deg, "A {:.4f},B {:.4f},C {:.4f}");
 }
 
 std::string JointDialect::three(const Eigen::Vector3d& value, double unit, const char* form) {
