@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ToleranceInM", "smoothing.tip_tolerance_mm", {2e-5}, "in m?"},
         Mistake{"PeriodInS", "smoothing.sample_period_ms", {0.001}, "in s?"},
         Mistake{"InertiaInKgMm2", "robot.links[0].inertia_kg_m2", {7.2e6, 6.8e6, 2e6, 0, 0, 0}, "kg mm^2"}),
-    [](const ::testing::TestParamInfo<Mistake>& info) { return std::string(info.param.name); });
+    [](const ::testing::TestParamInfo<Mistake>& mistake) { return std::string(mistake.param.name); });
 
 struct Right {
   const char* key;
