@@ -114,7 +114,7 @@ CLI::Option* add_posture(CLI::App* sub, std::vector<double>& posture_deg) {
 
 /// Files to begin with.
 void CommandLine::add_first_verbs() {
-  CLI::App* sub = verb("init", "a commented file to begin with, that runs as it is",
+  CLI::App* sub = verb("init", "a commented file in which what only you know is to be filled in",
                        [this](Progress& p) { return run(init, common, p); });
   sub->remove_option(sub->get_option("--report"));
   sub->add_option("kind", init.kind, "job, hits, lobes, cell, assembly, forces or monitor")

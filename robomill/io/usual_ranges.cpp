@@ -43,7 +43,7 @@ constexpr std::array rows = std::to_array<UsualRange>({
     // cut
     {"feed_per_tooth_mm", 1e-4, 2},
     {"feed_per_revolution_mm", 0.001, 5},
-    {"axial_depth_mm", 0.001, 200},
+    {"axial_depth_mm", 0.0055, 200},
     {"radial_depth_mm", 0.001, 250},
     {"stepover_mm", 0.001, 250},
     {"entry_deg", 0, 360, any},

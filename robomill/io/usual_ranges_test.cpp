@@ -173,13 +173,13 @@ TEST(UsualRanges, AreSaidWithFileLineKeyAndValue) {
   test::Folder folder;
   const auto path = folder.file("cut.toml",
                                 "[tool]\nteeth = 2\n[cut]\nfeed_per_tooth_mm = 6\n[[cuts]]\naxial_depth_mm = 1\n"
-                                "[[cuts]]\naxial_depth_mm = 0.0004\n");
+                                "[[cuts]]\naxial_depth_mm = 0.002\n");
   const std::vector<std::string> found = TomlFile(path).unusual();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0], "Warning: " + path.string() +
                           ":4: cut.feed_per_tooth_mm = 6 mm; is unusual: 0.0001 to 2 mm is usual. Is it in um?");
   EXPECT_EQ(found[1], "Warning: " + path.string() +
-                          ":8: cuts[2].axial_depth_mm = 0.0004 mm; is unusual: 0.001 to 200 mm is usual. Is it in m?");
+                          ":8: cuts[2].axial_depth_mm = 0.002 mm; is unusual: 0.0055 to 200 mm is usual. Is it in m?");
   std::vector<std::string> notes = {"one", found[0], "two"};
   EXPECT_EQ(take_warnings(notes), std::vector<std::string>{found[0].substr(9)});
   EXPECT_EQ(notes, (std::vector<std::string>{"one", "two"}));

@@ -228,7 +228,8 @@ TEST(RunForces, AProgramThatDoesNotGiveItsStocksHeightNeedsOne) {
   EXPECT_NE(message.find("how high the material stands"), std::string::npos) << message;
 }
 
-// F in m/min and F in mm per tooth, a stock in another corner, a spindle that turns left.
+// F in m/min and F in mm per tooth, a feed of the path for one of a tooth, a stock in another corner, a spindle that
+// turns left.
 TEST(RunForces, SaysWhereAProgramDoesNotFitItsForces) {
   const Folder folder;
   const auto warned = [&](const std::string& old_text, const std::string& new_text, const std::string& stock,
@@ -241,10 +242,12 @@ TEST(RunForces, SaysWhereAProgramDoesNotFitItsForces) {
     return std::ranges::any_of(result.warnings,
                                [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
   };
-  const std::string feed = "and cut.feed_per_tooth_mm is 0.04", none = "No block cuts", left = "the spindle turns left";
-  for (const std::string& text : {feed, none, left}) EXPECT_FALSE(warned("F1200", "F1200", "", text)) << text;
+  const std::string feed = "and cut.feed_per_tooth_mm is 0.04", large = "mm is unusual for a cutter of";
+  const std::string none = "No block cuts", left = "the spindle turns left";
+  for (const std::string& text : {feed, large, none, left}) EXPECT_FALSE(warned("F1200", "F1200", "", text)) << text;
   EXPECT_TRUE(warned("F1200", "F1.2", "", feed));
   EXPECT_TRUE(warned("F1200", "F20000", "", feed));
+  EXPECT_TRUE(warned("F1200", "F60000", "", large));
   EXPECT_TRUE(warned("M3", "M4", "", left));
   EXPECT_TRUE(warned("M3", "M3", "[stock]\nkind = \"box\"\nmin_mm = [200, 200, -20]\nmax_mm = [300, 300, 0]\n", none));
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/unusual_cut.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/choose.hpp"
 #include "robomill/robot/inverse.hpp"
@@ -244,8 +246,7 @@ void warn_of_program(const ForcesFile& file, const ProgramForces& out, std::vect
   const auto cuts = [](const BlockResult& row) { return row.force.cuts(); };
   if (std::ranges::none_of(out.blocks, cuts)) {
     warnings.emplace_back(
-        "No block cuts: the program does not touch the stock. Compare where the stock and the program stand in the "
-        "work "
+        "No block cuts: the program does not touch the stock. Compare where stock and program stand in the work "
         "frame.");
     return;
   }
@@ -262,6 +263,16 @@ void warn_of_program(const ForcesFile& file, const ProgramForces& out, std::vect
         "program's F, the spindle speed and the teeth fit each other?",
         feeds_m.front() / units::mm, feeds_m.back() / units::mm, said_m / units::mm));
   }
+  cutting::FromTo speed_rad_per_s = {HUGE_VAL, 0.0};
+  for (const BlockResult& row : out.blocks) {
+    if (!cuts(row)) continue;
+    speed_rad_per_s[0] = std::min(speed_rad_per_s[0], row.force.spindle_speed_rad_per_s);
+    speed_rad_per_s[1] = std::max(speed_rad_per_s[1], row.force.spindle_speed_rad_per_s);
+  }
+  const double radius_m = 0.5 * file.cutter.mill.diameter_m;
+  std::ranges::move(cutting::unusual_cut(2.0 * radius_m, feeds_m.back(),
+                                         {radius_m * speed_rad_per_s[0], radius_m * speed_rad_per_s[1]}),
+                    std::back_inserter(warnings));
   warn_of(
       out, warnings,
       [&](const BlockResult& row) {

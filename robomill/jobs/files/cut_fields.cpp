@@ -9,7 +9,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/unusual_cut.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -133,6 +135,13 @@ void require_full_width(const io::TomlFile& file, cutting::MillingDirection dire
                       fmt::format("contradicts cut.direction = \"slot\", whose width is the diameter, {:.6g} mm",
                                   tool.diameter_m / units::mm),
                       "A narrower cut is \"up\" or \"down\"; of a slot leave the radial depth out");
+  }
+}
+
+void add_unusual(const cutting::CutAtHand& cut, std::vector<std::string>& notes) {
+  for (const std::string& text :
+       cutting::unusual_cut(cut.diameter_m, cut.feed_per_tooth_m, cut.cutting_speed_m_per_s)) {
+    notes.push_back(std::string(io::warning_label) + text);
   }
 }
 

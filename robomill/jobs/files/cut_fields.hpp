@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "robomill/cutting/cutter.hpp"
+#include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/modes.hpp"
@@ -28,6 +30,9 @@ bool read_radial_depth(io::TomlFile& file, double& radial_depth_m);
 ///     slot may be narrower than its diameter.
 void require_full_width(const io::TomlFile& file, cutting::MillingDirection direction, double radial_depth_m,
                         const cutting::FlatEndMill& tool, cutting::CutterKind kind = cutting::CutterKind::flat_end);
+
+/// Warnings of what is unusual about the cut as a whole.
+void add_unusual(const cutting::CutAtHand& cut, std::vector<std::string>& notes);
 
 /// equal_directions and rigid_directions of a table that holds the structure of a milling tool.
 /// @param own  modes of the table's own, which then know only the directions that it names; an empty list, y = [], says

@@ -164,6 +164,7 @@ void read_coefficients(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   out.notes = table.notes;
   std::ranges::move(table.outside(cut), std::back_inserter(out.notes));
   std::ranges::move(table.unlike_recommended(cut), std::back_inserter(out.notes));
+  add_unusual(cut, out.notes);
 }
 
 ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob job) {

@@ -316,6 +316,7 @@ void take_material(const io::TomlFile& file, const cutting::CoefficientTable& ta
   cut.diameter_m = 2.0 * radius_m;
   std::ranges::move(table.outside(cut), std::back_inserter(out.notes));
   if (!out.drilling) std::ranges::move(table.unlike_recommended(cut), std::back_inserter(out.notes));
+  add_unusual(cut, out.notes);
   if (table.std_ratio == 0.0) return;
   for (const char* key : {"tangential_std_n_per_mm2", "radial_std_n_per_mm2", "coefficient_std_ratio"}) {
     if (file.has(std::string("uncertainty.") + key)) return;
