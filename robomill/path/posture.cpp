@@ -347,13 +347,16 @@ Resemblance resemblance(const robot::Kinematics& kinematics, const robot::Positi
 std::string singularity_text(const robot::Configuration& configuration) {
   if (!configuration.known) return {};
   if (configuration.wrist_rad < near_angle) {
-    return "axes 4 and 6 stand " + degrees(configuration.wrist_rad) + " from one line";
+    return "axes 4 and 6 stand " + degrees(configuration.wrist_rad) +
+           (configuration.parallel_axes ? " from parallel" : " from one line");
   }
   if (configuration.elbow_rad < near_angle) {
     return "the arm stands " + degrees(configuration.elbow_rad) + " from stretched or folded";
   }
   if (configuration.shoulder_m < near_length_m) {
-    return "the wrist's centre stands " + number(configuration.shoulder_m / units::mm, "mm") + " from axis 1";
+    const std::string away = number(configuration.shoulder_m / units::mm, "mm");
+    return configuration.parallel_axes ? "axes 5 and 6 meet " + away + " from the plane through axis 1 along axis 2"
+                                       : "the wrist's centre stands " + away + " from axis 1";
   }
   return {};
 }

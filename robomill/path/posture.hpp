@@ -64,7 +64,8 @@ struct PostureChoice {
                                                    const robot::Position6& high);
 
 /// What a position stands next to: "axes 4 and 6 stand 0.31° from one line", "the arm stands 2° from stretched or
-/// folded", "the wrist's centre stands 12 mm from axis 1"; empty from 5° or 50 mm on.
+/// folded", "the wrist's centre stands 12 mm from axis 1", and their like where axes 2, 3 and 4 are parallel; empty
+/// from 5° or 50 mm on.
 [[nodiscard]] ROBOMILL_API std::string singularity_text(const robot::Configuration& configuration);
 
 /// Chooses where a machine starts and how the flange stands about the tool's axis, of all constant gammas and all ways

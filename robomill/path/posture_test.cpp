@@ -145,6 +145,33 @@ TEST(Posture, UnwindsWhatLimitsWouldLetWind) {
   }
 }
 
+// Of eight ways to a pose, and their turns within ±360°, that with home's shoulder, elbow and wrist.
+TEST(Posture, OfParallelAxesStandsAsAtHomeToo) {
+  robot::Cell cell{.arm = arms::ur5e(), .tool_length_m = 0.2};
+  for (robot::Joint& joint : cell.arm.joints) {
+    joint.min_position = -2.0 * arms::pi;
+    joint.max_position = 2.0 * arms::pi;
+    joint.max_velocity = joint.max_acceleration = joint.max_jerk = 10.0;
+  }
+  const robot::SerialKinematics machine(cell);
+  const robot::Position6 home{0.0, -1.05, 1.57, -2.09, -1.57, 0.0};
+  const robot::Configuration at_home = machine.configuration(home);
+  ASSERT_TRUE(at_home.known);
+  Random random(8);
+  for (int k = 0; k < robomill::test::seeds(40); ++k) {
+    robot::Position6 near = home;
+    for (double& angle : near) angle += random.uniform(-0.4, 0.4);
+    const program::Program program = move_from(machine, near);
+    program::ProgramSource source(program);
+    const PostureChoice choice = choose_posture(source, machine, {.home = home});
+    const robot::Configuration at_start = machine.configuration(choice.posture.start);
+    EXPECT_EQ(at_start.shoulder_back, at_home.shoulder_back) << k;
+    EXPECT_EQ(at_start.elbow_down, at_home.elbow_down) << k;
+    EXPECT_EQ(at_start.wrist_flipped, at_home.wrist_flipped) << k;
+    EXPECT_EQ(choice.resemblance->turns, 0) << k;
+  }
+}
+
 TEST(Posture, TakesAnotherConfigurationOnlyWhereHomesDoesNotGoThrough) {
   robot::Cell cell = facing_cell();
   const robot::Position6 home = arms::kr210_posture();

@@ -45,10 +45,11 @@ struct Reach {
                         ///< [rad] where only the wrist cannot bend far enough, 0 where there is no such number
 };
 
-/// Which of its ways to a pose an arm with a spherical wrist takes, and how far it is from where two ways meet.
+/// Which of its ways to a pose an arm takes, and how far it is from where two ways meet.
 struct Configuration {
   bool known = false;          ///< false of machines that have no such ways in closed form
-  bool shoulder_back = false;  ///< as InverseSolution, the next five too
+  bool parallel_axes = false;  ///< axes 2, 3 and 4 are parallel; else the wrist is spherical
+  bool shoulder_back = false;  ///< as InverseSolution, the next five too; of parallel axes see robot/README.md
   bool elbow_down = false;
   bool wrist_flipped = false;
   double shoulder_m = 0.0;

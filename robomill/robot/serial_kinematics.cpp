@@ -14,6 +14,7 @@
 #include "robomill/robot/condition.hpp"
 #include "robomill/robot/images.hpp"
 #include "robomill/robot/newton.hpp"
+#include "robomill/robot/parallel_axes.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::robot {
@@ -106,6 +107,7 @@ SerialKinematics::SerialKinematics(const Cell& cell, const SerialOptions& option
     inverse_.emplace(cell.arm);
   } catch (const InvalidInput&) {
     inverse_.reset();  // no spherical wrist: Newton's steps serve
+    parallel_axes_ = has_parallel_axes(cell.arm);
   }
 }
 
@@ -309,9 +311,10 @@ double SerialKinematics::regularity(const Position6& position) const noexcept {
 
 Configuration SerialKinematics::configuration(const Position6& position) const noexcept {
   Configuration out;
-  if (!inverse_) return out;
+  if (!inverse_ && !parallel_axes_) return out;
   Posture posture;
   posture.update(cell_.arm, position);
+  if (!inverse_) return parallel_configuration(posture);
   // Of all ways to the flange's pose the one that the position is, whole turns apart.
   const InverseSolutions solutions = inverse_->solve(posture.flange, position);
   double least = HUGE_VAL;

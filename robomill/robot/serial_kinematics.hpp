@@ -62,6 +62,7 @@ class ROBOMILL_API SerialKinematics final : public Kinematics {
   SerialOptions options_;
   JointLimits limits_;
   std::optional<SphericalWristInverse> inverse_;
+  bool parallel_axes_ = false;
 };
 
 }  // namespace robomill::robot

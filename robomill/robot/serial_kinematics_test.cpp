@@ -63,7 +63,45 @@ TEST(SerialKinematics, NamesTheConfigurationOfAPosition) {
     EXPECT_NE(machine.configuration(b).wrist_flipped, at_a.wrist_flipped);
     EXPECT_EQ(machine.configuration(b).elbow_down, at_a.elbow_down);
   }
-  EXPECT_FALSE(SerialKinematics(cell_of(testing::ur5e(), random)).configuration(Position6::Zero()).known);
+}
+
+// The three flags are the signs of the factors of det J, and no two ways to a pose have the same.
+TEST(SerialKinematics, NamesTheConfigurationOfParallelAxes) {
+  Random random(4);
+  int ways = 0;
+  for (int k = 0; k < seeds(100); ++k) {
+    const Cell cell = cell_of(testing::ur5e(), random);
+    const SerialKinematics machine(cell);
+    Position6 a;
+    for (double& angle : a) angle = random.uniform(-testing::pi, testing::pi);
+    const auto sign_of = [](const Configuration& c) {
+      return (c.shoulder_back ? -1.0 : 1.0) * (c.elbow_down ? -1.0 : 1.0) * (c.wrist_flipped ? -1.0 : 1.0);
+    };
+    const Configuration at_a = machine.configuration(a);
+    ASSERT_TRUE(at_a.known && at_a.parallel_axes);
+    EXPECT_NEAR(at_a.wrist_rad, std::min(std::abs(a(4)), testing::pi - std::abs(a(4))), 1e-7);
+    EXPECT_NEAR(at_a.elbow_rad, std::min(std::abs(a(2)), testing::pi - std::abs(a(2))), 1e-7);
+    const double determinant = jacobian(cell.arm, a, Eigen::Vector3d::Zero()).determinant();
+    EXPECT_GT(determinant * sign_of(at_a), 0.0) << a.transpose();
+    std::array<Position6, 32> branches;
+    const int count = machine.all(machine.forward(a), branches.data(), 32);
+    ways += count;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const Position6 &at_i = branches[static_cast<std::size_t>(i)], &at_j = branches[static_cast<std::size_t>(j)];
+        double apart = 0.0;
+        for (int m = 0; m < 6; ++m)
+          apart = std::max(apart, std::abs(std::remainder(at_i(m) - at_j(m), 2.0 * testing::pi)));
+        if (apart < 1e-6) continue;  // whole turns
+        const Configuration one = machine.configuration(at_i), other = machine.configuration(at_j);
+        EXPECT_FALSE(one.shoulder_back == other.shoulder_back && one.elbow_down == other.elbow_down &&
+                     one.wrist_flipped == other.wrist_flipped)
+            << at_i.transpose() << "\n"
+            << at_j.transpose();
+      }
+    }
+  }
+  EXPECT_GT(ways, 0);
 }
 
 TEST(SerialKinematics, FollowsAsChooseDoes) {
