@@ -59,8 +59,7 @@ RandomCut random_cut(Random& random, int seed) {
     }
     out.tool += "]\n";
   }
-  // Of a corner's chip the cut in time knows the curvature too, f² cos² κ / 2 R beside f sin κ: little of small feeds.
-  const double feed_mm = flat ? random.uniform(0.03, 0.15) : random.uniform(0.005, 0.01);
+  const double feed_mm = random.uniform(0.03, 0.15);
   const char* const directions[] = {"up", "down", "slot"};
   const char* const direction = directions[(seed / 2) % 3];
   out.cut = fmt::format("[cut]\ndirection = \"{}\"\nfeed_per_tooth_mm = {:.4g}\n", direction, feed_mm);
