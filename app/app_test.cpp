@@ -121,7 +121,7 @@ TEST_F(App, SimulatesDrilling) {
   ASSERT_EQ(run.exit, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
   // Two lips: n (b / sin p) (Kr f/n sin p) sin p = 500 * 1 * 0.1 * sin 59 degrees.
-  EXPECT_NEAR(json["peak_force_n"][2].get<double>(), 42.9, 4.0);
+  EXPECT_NEAR(json["vibrating_peak_n"][2].get<double>(), 42.9, 4.0);
   EXPECT_EQ(robomill("simulate drill.toml --at 3000,6 --seconds 0.2").exit, 1);
   const Ended lobes = robomill("lobes drill.toml --at 3000,1");
   EXPECT_EQ(lobes.exit, 0) << lobes.err;

@@ -201,7 +201,7 @@ TEST(LiveLobes, GivesTheLimitAtEachPoint) {
       EXPECT_NEAR(points[i]["limit_depth_mm"].get<double>(), exact_mm, 2e-3 * 3.0);
       EXPECT_NEAR(points[i]["margin"].get<double>(),
                   1.0 - points[i]["axial_depth_mm"].get<double>() / points[i]["limit_depth_mm"].get<double>(), 1e-12);
-      EXPECT_GT(points[i]["chatter_frequency_hz"].get<double>(), 0.0);
+      EXPECT_GT(points[i]["dominant_frequency_hz"].get<double>(), 0.0);
       EXPECT_TRUE(points[i]["mode"].is_number());
     }
     EXPECT_NEAR(points[1]["spectral_radius"].get<double>(),

@@ -47,7 +47,7 @@ struct Ring {
   double entry_rad = 0.0, exit_rad = 0.0;  ///< entry in [0, 2π), exit less than a revolution after it
   bool whole_circle = false;               ///< in the cut at every angle
   double lateral = 1.0, axial = 0.0;       ///< sin κ, cos κ
-  /// Half the envelope's curvatures, along t and along the profile.
+  /// Half the envelope's curvatures, along t and along the profile: of marks that the feed leaves behind.
   double bend_around_per_m = 0.0, bend_along_per_m = 0.0;
 };
 

@@ -76,7 +76,7 @@ typename Engine<D>::Chip Engine<D>::chip(const Element& element, double position
 template <int D>
 bool Engine<D>::update_contact(const Touch& touch, Chip& chip, const Vector<D>& q) const {
   if (physics_ != Physics::full) return false;
-  const bool cuts = normal(*touch.ring, chip.sine, chip.cosine).dot(q) + chip.gap_m > 0.0;
+  const bool cuts = normal(*touch.ring, chip.sine, chip.cosine).dot(q) + chip.gap_m >= 0.0;
   const bool changed = cuts != chip.cuts;
   chip.cuts = cuts;
   return changed;
@@ -313,15 +313,15 @@ void Engine<D>::leave_node(const Near& near, int node) {
   const double vibration = normal(ring, sine, cosine).dot((1.0 - s) * q_a_ + s * q_);
   const double feed = feed_a_ + s * (feed_b_ - feed_a_);
   const Node& old = surface_.node(index);
-  const double fed = surface_.fed(ring, feed, old, sine, cosine);
+  const double behind = surface_.behind(ring, feed, old, sine, cosine);
   Pending& p = pending_[static_cast<std::size_t>(near.element)];
   p.node = kept;
   if (physics_ == Physics::full) {
     p.value = {e.radius_m + vibration, feed, 0.0};
-    p.cuts = p.value.out_m - old.out_m + fed > 0.0;
+    p.cuts = p.value.out_m - old.out_m + behind >= 0.0;
   } else {
     p.value = {e.radius_m, feed, vibration};
-    p.cuts = e.radius_m - old.out_m + fed >= 0.0;
+    p.cuts = e.radius_m - old.out_m + behind >= 0.0;
   }
 }
 

@@ -204,6 +204,7 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
     if (i < steps) {
       watch.look<D>(i, q.head<D>());
       missed = engine.steps_without_contact();
+      out.vibrating_peak_force_n = std::max(out.vibrating_peak_force_n, engine.mean_force().norm());
     }
     if ((i + 1) % check_every == 0) progress.advance(check_every);
     if (!(q.squaredNorm() < diverged_m * diverged_m)) {

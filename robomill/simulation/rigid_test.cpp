@@ -57,16 +57,15 @@ void expect_forces(const MillingCut& cut, int steps, const Chip& chip, double to
   }
 }
 
-/// f sin φ, and what a circle's own curvature adds.
-double fed_chip(double feed, double angle, double diameter) {
-  return feed * std::sin(angle) + feed * feed * std::cos(angle) * std::cos(angle) / diameter;
+double fed_chip(double feed, double angle) {
+  return feed * std::sin(angle);
 }
 
 TEST(RigidCut, GivesTheMechanisticForce) {
   const MillingCut cut = testing::rigid_cut();
   const double peak = tooth_force(cut, 0.5 * pi, cut.milling.feed_per_tooth_m).norm();
   expect_forces(
-      cut, 2000, [&](int, double angle) { return fed_chip(cut.milling.feed_per_tooth_m, angle, 0.01); }, 1e-5 * peak);
+      cut, 2000, [&](int, double angle) { return fed_chip(cut.milling.feed_per_tooth_m, angle); }, 1e-5 * peak);
 }
 
 // The impulse of a revolution, entry and exit included, against the integral of the closed form; steps that do not
@@ -78,7 +77,7 @@ TEST(RigidCut, KeepsTheImpulseWhereTeethEnterAndLeave) {
   const double entry = cut.milling.immersion.entry_rad, range = cut.milling.immersion.exit_rad - entry;
   for (int i = 0; i < count; ++i) {
     const double angle = entry + range * (i + 0.5) / count;
-    expected += tooth_force(cut, angle, fed_chip(cut.milling.feed_per_tooth_m, angle, 0.01)) * (2.0 * range / count);
+    expected += tooth_force(cut, angle, fed_chip(cut.milling.feed_per_tooth_m, angle)) * (2.0 * range / count);
   }
   double before = 0.0;
   for (const int steps : {62, 124, 248}) {
@@ -105,8 +104,7 @@ TEST(RigidCut, OneToothCutsForBothWhereRunoutExceedsHalfTheFeed) {
   const double feed = cut.milling.feed_per_tooth_m;
   const double peak = tooth_force(cut, 0.5 * pi, 2.0 * feed).norm();
   expect_forces(
-      cut, 2000, [&](int tooth, double angle) { return tooth == 0 ? fed_chip(2.0 * feed, angle, 0.01) : 0.0; },
-      1e-4 * peak);
+      cut, 2000, [&](int tooth, double angle) { return tooth == 0 ? fed_chip(2.0 * feed, angle) : 0.0; }, 1e-4 * peak);
 }
 
 TEST(RigidCut, SmallRunoutThickensOneChipAndThinsTheOther) {
@@ -116,7 +114,7 @@ TEST(RigidCut, SmallRunoutThickensOneChipAndThinsTheOther) {
   const double feed = cut.milling.feed_per_tooth_m;
   const double peak = tooth_force(cut, 0.5 * pi, 2.0 * feed).norm();
   expect_forces(
-      cut, 2000, [&](int tooth, double angle) { return fed_chip(feed, angle, 0.01) + (tooth == 0 ? 2e-5 : -2e-5); },
+      cut, 2000, [&](int tooth, double angle) { return fed_chip(feed, angle) + (tooth == 0 ? 2e-5 : -2e-5); },
       1e-4 * peak);
 }
 
@@ -131,7 +129,7 @@ TEST(RigidCut, AToothMissesOnlyWhereTheFeedIsSmallerThanItLacks) {
   const double feed = cut.milling.feed_per_tooth_m;
   const double peak = tooth_force(cut, 0.5 * pi, 2.0 * feed).norm();
   const auto chip = [&](int tooth, double angle) {
-    const double one = fed_chip(feed, angle, 0.01), two = fed_chip(2.0 * feed, angle, 0.01);
+    const double one = fed_chip(feed, angle), two = fed_chip(2.0 * feed, angle);
     return tooth == 0 ? std::min(one + 4e-5, two) : std::min(one - 4e-5, two);
   };
   expect_forces(cut, 4000, chip, 2e-3 * peak);
@@ -145,7 +143,7 @@ TEST(RigidCut, UnequalPitchSharesTheFeedByPitch) {
   const double peak = tooth_force(cut, 0.5 * pi, 2.0 * cut.milling.feed_per_tooth_m).norm();
   const auto chip = [&](int tooth, double angle) {
     const double feed = 3.0 * cut.milling.feed_per_tooth_m * cut.milling.tool.pitch(tooth) / revolution;
-    return fed_chip(feed, angle, 0.01);
+    return fed_chip(feed, angle);
   };
   expect_forces(cut, 3600, chip, 1e-4 * peak);
 }
@@ -175,8 +173,7 @@ TEST(RigidCut, ASwingOfTheSpeedSwingsTheChip) {
       const double angle = wrapped(rotation + pi * j);
       border = border || std::abs(angle - 0.7) < 3e-3 || std::abs(angle - 2.5) < 3e-3;
       if (angle < 0.7 || angle > 2.5) continue;
-      expected +=
-          tooth_force(cut, angle, fed_chip(model.feed_m_per_s * (middle - time_of(rotation - pi)), angle, 0.01));
+      expected += tooth_force(cut, angle, fed_chip(model.feed_m_per_s * (middle - time_of(rotation - pi)), angle));
       ++compared;
     }
     if (border) continue;

@@ -95,6 +95,9 @@ struct Simulation {
   double chatter_frequency_hz = 0.0;  ///< strongest motion that is no harmonic of rotation; 0 where stable
   double chatter_amplitude_m = 0.0;   ///< of it
   SmallVibration small;
+  /// Largest force on the tool over the time, entry included, of the means over the steps: that of a tool that
+  /// vibrates, unlike cutting::CuttingForce::peak_force_n.
+  double vibrating_peak_force_n = 0.0;
   double missed_share = 0.0;  ///< share of the time in which an edge between entry and exit touches nothing
   std::vector<Wall> walls;    ///< none for an edge that leaves none, without feed, or where there was too little time
   int steps_per_revolution = 0, slices = 1;

@@ -76,7 +76,7 @@ cutting::Cutter random_cutter(Random& random) {
     mill.pitch_rad.back() -= shift;
   }
   if (random.index(5) == 0) {
-    mill.runout_m = random.uniform(5e-9, 4e-8);
+    mill.runout_m = random.uniform(5e-6, 4e-5);
     mill.runout_angle_rad = random.uniform(0.0, 2.0 * pi);
   }
   return cutter;
@@ -99,7 +99,7 @@ std::optional<Drawn> draw(std::uint64_t seed) {
                           .radial_n_per_m2 = {random.uniform(2e8, 8e8)},
                           .axial_n_per_m2 = {random.uniform(5e7, 3e8) * (random.index(2) == 0 ? 1.0 : -1.0)}};
   if (random.index(3) == 0) milling.coefficients.radial_n_per_m2 = {1e8, -2e8, 6e8};
-  milling.feed_per_tooth_m = 5e-8;  // with as little runout: the simulation knows terms of the order of feed / diameter
+  milling.feed_per_tooth_m = 5e-5;
   milling.modes_turn_with_tool = random.index(2) == 0;
   drawn.problem.dynamics = random_structure(random);
   drawn.problem.feed_direction_rad = random.uniform(0.0, 2.0 * pi);

@@ -6,7 +6,10 @@
 
 namespace robomill::simulation::detail {
 template <int D>
-Surface<D>::Surface(const CutModel& model) : model_(model), step_(units::revolution / model.steps_per_revolution) {
+Surface<D>::Surface(const CutModel& model)
+    : model_(model),
+      step_(units::revolution / model.steps_per_revolution),
+      feed_per_revolution_m_(model.feed_m_per_s * units::revolution / model.spindle.mean_rad_per_s) {
   strips_.reserve(model.rings.size());
   std::size_t size = 0;
   for (const Ring& ring : model.rings) {
@@ -57,8 +60,8 @@ void Surface<D>::set_rigid() {
       if (since < step_ * (1.0 - 1e-7)) since += units::revolution;
       const std::size_t i = on.index(k);
       const Node mine = {element.radius_m, -since * metres_per_rad, 0.0};
-      const double ours = mine.out_m - fed(ring, 0.0, mine, sine_[i], cosine_[i]);
-      const double theirs = nodes_[i].out_m - fed(ring, 0.0, nodes_[i], sine_[i], cosine_[i]);
+      const double ours = mine.out_m - behind(ring, 0.0, mine, sine_[i], cosine_[i]);
+      const double theirs = nodes_[i].out_m - behind(ring, 0.0, nodes_[i], sine_[i], cosine_[i]);
       const bool later = mine.feed_m > nodes_[i].feed_m;
       if (!seen[i] || ours > theirs || (ours == theirs && later)) nodes_[i] = mine;
       seen[i] = true;

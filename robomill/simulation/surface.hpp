@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -30,11 +31,14 @@ struct Strip {
 
 /// What all earlier edges left; of a ring that does not cut all round only where it cuts and two nodes beyond.
 ///
-/// An edge that now stands out_m beyond the nominal ring with the feed at feed_m has before it
-///   h = out - node.out + d (n·u) + d² ((t·u)² / 2r_t + (m·u)² / 2r_m),  d = feed - node.feed,
-/// u the feed's direction, r_t and r_m the envelope's radii of curvature along the cut t and the profile m (the last
-/// term is what an earlier surface falls back beside its own direction). Of a cylinder fed along x that is
-/// d sin φ + (d cos φ)² / 2R, and of a drill d times the axial part of n.
+/// An edge that now stands out_m beyond the nominal ring with the feed at feed_m cuts
+///   h = out - node.out + d (n·u),  d = feed - node.feed,
+/// u the feed's direction: what the feed sweeps past a piece of the envelope, d (n·u) dA, adds up to the volume
+/// removed. Of a cylinder fed along x that is d sin φ, and of a drill d times the axial part of n.
+///
+/// Which edge stood farthest out is told by the same terms. Where the feed runs along the envelope (n·u = 0) they would
+/// keep a mark for ever: one older than a revolution also falls back by e² ((t·u)² / 2r_t + (m·u)² / 2r_m), e the feed
+/// since then, r_t and r_m the envelope's radii of curvature along the cut t and the profile m.
 template <int D>
 class Surface {
  public:
@@ -59,26 +63,35 @@ class Surface {
     return {a.out_m + f * (b.out_m - a.out_m), a.feed_m + f * (b.feed_m - a.feed_m),
             a.vibration_m + f * (b.vibration_m - a.vibration_m)};
   }
-  /// The terms of h that come with the feed. Just beyond entry and exit, where n·u < 0, the feed brings nothing.
+  /// The term of h that comes with the feed. Just beyond entry and exit, where n·u < 0, the feed brings nothing.
   [[nodiscard]] double fed(const Ring& ring, double feed_m, const Node& node, double sine, double cosine) const {
     const double d = feed_m - node.feed_m;
     if constexpr (D == 2) {
-      const double across = d * cosine;
-      return d * (sine > 0.0 ? sine : 0.0) + across * across * ring.bend_around_per_m;
+      return d * (sine > 0.0 ? sine : 0.0);
     } else {
       const Eigen::Vector3d& u = model_.feed_direction;
-      const double outward = u.x() * sine + u.y() * cosine;
-      const double ahead = ring.lateral * outward - ring.axial * u.z();
-      const double around = u.x() * cosine - u.y() * sine;
-      const double along = ring.axial * outward + ring.lateral * u.z();
-      const double bend = ring.bend_around_per_m * around * around + ring.bend_along_per_m * along * along;
-      return d * (ahead > 0.0 ? ahead : 0.0) + d * d * bend;
+      const double ahead = ring.lateral * (u.x() * sine + u.y() * cosine) - ring.axial * u.z();
+      return d * (ahead > 0.0 ? ahead : 0.0);
     }
+  }
+  /// How far the feed has brought the envelope before the surface since the node was left.
+  [[nodiscard]] double behind(const Ring& ring, double feed_m, const Node& node, double sine, double cosine) const {
+    const double older = std::max(0.0, feed_m - node.feed_m - feed_per_revolution_m_);
+    double bend = 0.0;
+    if constexpr (D == 2) {
+      bend = cosine * cosine * ring.bend_around_per_m;
+    } else {
+      const Eigen::Vector3d& u = model_.feed_direction;
+      const double around = u.x() * cosine - u.y() * sine;
+      const double along = ring.axial * (u.x() * sine + u.y() * cosine) + ring.lateral * u.z();
+      bend = ring.bend_around_per_m * around * around + ring.bend_along_per_m * along * along;
+    }
+    return fed(ring, feed_m, node, sine, cosine) + older * older * bend;
   }
 
  private:
   const CutModel& model_;
-  double step_ = 0.0;
+  double step_ = 0.0, feed_per_revolution_m_ = 0.0;
   std::vector<Strip> strips_;
   std::vector<double> sine_, cosine_;
   std::vector<Node> nodes_;

@@ -31,10 +31,22 @@ Json point(double at_rpm, double radial_depth_mm) {
           {"stable", stable},
           {"error_estimate", 1e-6},
           {"multiplier", {spectral_radius, 0.0}},
-          {"chatter_frequency_hz", stable ? Json() : Json(chatter_hz)},
+          {"dominant_frequency_hz", stable ? Json() : Json(chatter_hz)},
           {"kind", "hopf"},
           {"mode", stable ? Json() : Json(8)},
           {"mode_of", stable ? Json() : Json("tool")}};
+}
+
+/// Where the cut begins to be unstable.
+Json border(double at_rpm, double radial_depth_mm) {
+  return {{"spindle_speed_rpm", at_rpm},
+          {"radial_depth_mm", radial_depth_mm},
+          {"chatter_frequency_hz", chatter_hz},
+          {"kind", "hopf"},
+          {"mode", 8},
+          {"mode_of", "tool"},
+          {"curve", 1},
+          {"error_estimate", 1e-6}};
 }
 
 /// A reading as chatter of mode 8, n rotations off.
@@ -107,9 +119,7 @@ std::string sample_sweep() {
     intervals.push_back({0.0, found ? limit_mm : 4.0});
     json["stable"].push_back({{"spindle_speed_rpm", at_rpm}, {"intervals", intervals}});
     if (!found) continue;
-    Json row = point(at_rpm, limit_mm);
-    row["curve"] = 1;
-    json["boundary"].push_back(row);
+    json["boundary"].push_back(border(at_rpm, limit_mm));
   }
   for (const Json& depth_mm : json["radial_depth_mm"]) {
     Json row = Json::array();
@@ -201,7 +211,8 @@ std::string sample_simulation() {
                      {"small_vibration", {{"spectral_radius", 1.183}, {"error_estimate", 1e-4}, {"period_s", 0.0022}}},
                      {"missed_share", 0.31},
                      {"walls", Json::array({wall})},
-                     {"peak_force_n", {211.0, 168.0, 41.0}},
+                     {"vibrating_peak_n", {211.0, 168.0, 41.0}},
+                     {"vibrating_peak_force_n", 259.0},
                      {"mean_force_n", {31.0, -12.0, 6.0}},
                      {"samples", 40000},
                      {"sample_rate_hz", 100000.0},

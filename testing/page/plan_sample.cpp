@@ -112,7 +112,7 @@ std::vector<Json> recommendations(const LimitCurve& lobes) {
                      {"removal_rate_mm3_per_s", depth_mm * 1.8 * feed_mm_per_min / 60.0},
                      {"limited_by", "mode 8, chatter"},
                      {"limit_depth_mm", depth_mm / 0.8},
-                     {"chatter_frequency_hz", 566.4},
+                     {"window_chatter_frequency_hz", 566.4},
                      {"torque_n_m", 0.08},
                      {"power_w", 0.08 * rpm * units::rpm},
                      {"surface_error_um", 12.5},

@@ -58,7 +58,7 @@ export interface Recommendation {
   peak_deflection_um: Num;
   forced_vibration: ForcedVibration | null; // null: not computed
   limited_by: string;
-  chatter_frequency_hz: Num;
+  window_chatter_frequency_hz: Num;
   mode: Num;
   mode_of: Owner | null;
 }

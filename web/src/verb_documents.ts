@@ -20,7 +20,7 @@ export interface ChartPoint {
   spectral_radius: Num;
   stable: boolean;
   error_estimate: Num;
-  chatter_frequency_hz: Num;
+  dominant_frequency_hz: Num; // of the motion that dies out most slowly or grows fastest
   kind: Kind;
   mode: Num;
   mode_of: Owner | null;
@@ -127,7 +127,8 @@ export interface SimulationDocument {
     ra_um: Num;
     rz_um: Num;
   }[];
-  peak_force_n: Num[]; // x, y, z
+  vibrating_peak_n: Num[]; // x, y, z
+  vibrating_peak_force_n: Num;
   mean_force_n: Num[];
   samples: number;
   sample_rate_hz: number;

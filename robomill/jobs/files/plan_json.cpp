@@ -111,21 +111,22 @@ Json vibration_json(const stability::ForcedVibration& v) {
 }  // namespace
 
 Json operation_json(const decision::Operation& op) {
-  Json json = {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
-               {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
-               {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
-               {"margin", number(op.margin)},
-               {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
-               {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
-               {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
-               {"limited_by", limited_by_text(op)},
-               {"window_limit_mm", number(op.limit_depth_m / units::mm)},
-               {"chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
-               {"torque_n_m", number(op.torque_n_m)},
-               {"power_w", number(op.power_w)},
-               {"surface_error_um", number(op.surface_error_m / units::um)},
-               {"peak_deflection_um", number(op.peak_deflection_m / units::um)},
-               {"forced_vibration", vibration_json(op.vibration)}};
+  Json json = {
+      {"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
+      {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
+      {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
+      {"margin", number(op.margin)},
+      {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
+      {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
+      {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
+      {"limited_by", limited_by_text(op)},
+      {"window_limit_mm", number(op.limit_depth_m / units::mm)},
+      {"window_chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
+      {"torque_n_m", number(op.torque_n_m)},
+      {"power_w", number(op.power_w)},
+      {"surface_error_um", number(op.surface_error_m / units::um)},
+      {"peak_deflection_um", number(op.peak_deflection_m / units::um)},
+      {"forced_vibration", vibration_json(op.vibration)}};
   modal::set_mode(json, op.mode);
   return json;
 }

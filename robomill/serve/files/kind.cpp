@@ -221,6 +221,7 @@ FileKind kind_of_text(const Beginning& file) {
       {{"tool", "overhang_mm", "peak_hz"}, "result", "tools"},
       {{"method", "lowest_limit_mm"}, "result", "lobes"},
       {{"spindle_speed_rpm", "chatter_frequency_hz"}, "result", "lobes"},
+      {{"spindle_speed_rpm", "dominant_frequency_hz"}, "result", "lobes"},
       {{"spindle_speed_rpm", "from_radial_depth_mm"}, "result", "lobes"},
       {{"spindle_speed_rpm", "from_lead_deg"}, "result", "lobes"},
       {{"spindle_speed_rpm", "from_tilt_deg"}, "result", "lobes"},

@@ -118,7 +118,8 @@ std::string simulation_json(const Simulation& result, double spindle_speed_rad_p
     peak.push_back(io::number(any ? result.force_n.col(c).cwiseAbs().maxCoeff() : 0.0));
     mean.push_back(io::number(any ? result.force_n.col(c).mean() : 0.0));
   }
-  json["peak_force_n"] = peak;
+  json["vibrating_peak_n"] = peak;
+  json["vibrating_peak_force_n"] = io::number(result.vibrating_peak_force_n);
   json["mean_force_n"] = mean;
   json["samples"] = result.force_n.rows();
   json["sample_rate_hz"] = io::number(result.sample_rate_hz);

@@ -68,7 +68,8 @@ TEST(SimulationFiles, JsonSaysNullForNone) {
   EXPECT_EQ(json["verdict"], "stable");
   EXPECT_TRUE(json["chatter_frequency_hz"].is_null());
   EXPECT_TRUE(json["small_vibration"].is_null());
-  EXPECT_EQ(json["peak_force_n"][0], 490.0);
+  EXPECT_EQ(json["vibrating_peak_n"][0], 490.0);
+  EXPECT_FALSE(json.contains("peak_force_n")) << "of the rigid cutter, in forces.json";
   s.verdict = Verdict::chatter;
   s.chatter_frequency_hz = 933.9;
   s.walls.push_back({.angle_rad = 0.0, .location_error_m = 2e-6, .ra_m = 1e-7});

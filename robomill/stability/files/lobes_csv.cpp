@@ -75,7 +75,7 @@ std::string points_csv(const std::vector<PointResult>& points, SweptParameter pa
   const Column column = column_of(parameter);
   const bool limited = parameter == SweptParameter::axial_depth;
   std::string out = "spindle_speed_rpm," + column.name + (limited ? ",limit_depth_mm" : "") +
-                    ",stable,spectral_radius,error_estimate,gain_margin,chatter_frequency_hz,kind,mode,mode_of\n";
+                    ",stable,spectral_radius,error_estimate,gain_margin,dominant_frequency_hz,kind,mode,mode_of\n";
   for (const PointResult& point : points) {
     std::string value = csv_number(point.axial_depth_m, column.unit);
     if (limited) value += "," + csv_number(point.limit_depth_m, units::mm);

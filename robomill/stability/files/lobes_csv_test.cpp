@@ -50,7 +50,7 @@ TEST(PointsCsv, HasARowAPoint) {
   point.mode = {2, modal::ModeOwner::workpiece};
   EXPECT_EQ(points_csv({point}),
             "spindle_speed_rpm,axial_depth_mm,limit_depth_mm,stable,spectral_radius,error_estimate,gain_margin,"
-            "chatter_frequency_hz,kind,mode,mode_of\n6500,0.6,0.5,false,1.125,1e-07,,563.5,hopf,2,workpiece\n");
+            "dominant_frequency_hz,kind,mode,mode_of\n6500,0.6,0.5,false,1.125,1e-07,,563.5,hopf,2,workpiece\n");
   EXPECT_EQ(points_csv({point}, SweptParameter::radial_depth).rfind("spindle_speed_rpm,radial_depth_mm,stable,", 0),
             0U);
 }

@@ -27,9 +27,11 @@ io::Json point_json(double spindle_speed_rad_per_s, double value, const Varied& 
           {varied.key, io::number(value / varied.unit)}};
 }
 
+/// The frequency at a limit is that of chatter; at any other point it is that of the dominant multiplier, stable or
+/// not.
 template <class Point>
-void add_chatter(io::Json& json, const Point& point) {
-  json["chatter_frequency_hz"] = io::number(point.chatter_frequency_hz);
+void add_chatter(io::Json& json, const Point& point, const char* frequency = "chatter_frequency_hz") {
+  json[frequency] = io::number(point.chatter_frequency_hz);
   json["kind"] = to_string(point.kind);
   modal::set_mode(json, point.mode);
 }
@@ -48,7 +50,7 @@ io::Json evaluated_json(const PointResult& point, const Varied& varied = {}) {
   row["stable"] = point.stable;
   row["error_estimate"] = io::number(point.error_estimate);
   row["multiplier"] = io::complex_number(point.multiplier);
-  add_chatter(row, point);
+  add_chatter(row, point, "dominant_frequency_hz");
   if (!std::isnan(point.gain_margin)) row["gain_margin"] = io::number(point.gain_margin);
   if (!std::isnan(point.limit_depth_m)) {
     row["limit_depth_mm"] = io::number(point.limit_depth_m / units::mm);

@@ -86,7 +86,7 @@ describe('lobes', () => {
       margin: 0.2,
       removal_rate_mm3_per_s: null,
       limited_by: 'a < b',
-      chatter_frequency_hz: null,
+      window_chatter_frequency_hz: null,
       mode: null,
       mode_of: null,
     } as Recommendation;

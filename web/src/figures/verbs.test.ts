@@ -14,7 +14,7 @@ const point = (stable: boolean, depth: number) => ({
   spectral_radius: stable ? 0.8 : 1.2,
   stable,
   error_estimate: 0,
-  chatter_frequency_hz: 500,
+  dominant_frequency_hz: 500,
   kind: 'hopf' as const,
   mode: 1,
   mode_of: 'tool' as const,

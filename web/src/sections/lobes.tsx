@@ -85,7 +85,7 @@ export function PointsTable({ points, heading, valueOf }: PointsTableProps) {
         { heading: 'Stability', cell: ({ stable }) => <VerdictBadge verdict={stable ? 'stable' : 'chatter'} /> },
         { heading: 'Spectral radius', number: true, cell: (point) => fixed(point.spectral_radius, 4) },
         { heading: 'Gain margin', number: true, optional: true, cell: ({ gain_margin: gain = null }) => significant(gain) },
-        { heading: 'Chatter at (Hz)', number: true, optional: true, cell: (point) => (point.stable ? dash : fixed(point.chatter_frequency_hz, 1)) },
+        { heading: 'Chatter at (Hz)', number: true, optional: true, cell: (point) => (point.stable ? dash : fixed(point.dominant_frequency_hz, 1)) },
         { heading: 'Mode', optional: true, cell: (point) => (point.stable ? dash : modeName(point)) },
       ]}
     />

@@ -53,11 +53,11 @@ function surfaceSentence({ surface_error_um: error, peak_deflection_um: deflecti
 
 function Why({ cut }: { cut: Recommendation }) {
   const why = limitedBy(cut);
-  const chatters = cut.mode !== null || cut.chatter_frequency_hz !== null;
+  const chatters = cut.mode !== null || cut.window_chatter_frequency_hz !== null;
   const sentences: ComponentChildren[] = [];
   if (why !== '') sentences.push(<>Limited by <strong>{why}</strong>. </>);
-  if (cut.chatter_frequency_hz !== null && !why.includes(' Hz')) {
-    sentences.push(`Chatter would be at ${fixed(cut.chatter_frequency_hz, 0)} Hz. `);
+  if (cut.window_chatter_frequency_hz !== null && !why.includes(' Hz')) {
+    sentences.push(`Chatter would be at ${fixed(cut.window_chatter_frequency_hz, 0)} Hz. `);
   }
   if (cut.margin !== null) {
     const depth = percent(cut.margin, 0);

@@ -52,7 +52,7 @@ function Spectrum({ simulation, spectrum }: { simulation: SimulationDocument; sp
 }
 
 export function SimulationSection({ simulation, vibration }: { simulation: SimulationDocument; vibration: VibrationDocument | null }) {
-  const { peak_force_n: peak, mean_force_n: mean } = simulation;
+  const { vibrating_peak_n: peak, mean_force_n: mean } = simulation;
   const accuracy = `${significant(simulation.error_estimate)}${simulation.resolved ? '' : ', above the tolerance'}`;
   return (
     <Section id="simulation" heading="Cut in time" lead="The vibration of tool and part as it builds up, with teeth that may leave the cut.">

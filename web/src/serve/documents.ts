@@ -141,7 +141,7 @@ export interface EvaluatedPoint {
   margin?: Num; // 1 - depth/limit
   spectral_radius: Num;
   stable: boolean;
-  chatter_frequency_hz?: Num;
+  dominant_frequency_hz?: Num;
   kind?: Kind;
   mode?: Num;
   mode_of?: Owner | null;

@@ -66,7 +66,7 @@ describe('operating point', () => {
     expect(facts).toMatchObject({ stable: true, evaluated: false, limit_mm: 1, margin: 0.75, frequency_hz: 540, mode: 'mode 2' });
   });
   it('believes what was evaluated there', () => {
-    const here = { spindle_speed_rpm: 5800, axial_depth_mm: 1.2, spectral_radius: 1.02, stable: false, chatter_frequency_hz: 918, mode: 3, mode_of: 'tool' as const };
+    const here = { spindle_speed_rpm: 5800, axial_depth_mm: 1.2, spectral_radius: 1.02, stable: false, dominant_frequency_hz: 918, mode: 3, mode_of: 'tool' as const };
     expect(pointFacts([5800, 1.2], lobes, limit, [here])).toMatchObject({ stable: false, evaluated: true, frequency_hz: 918, mode: 'mode 3' });
     expect(pointFacts([5801, 1.2], lobes, limit, [here])).toMatchObject({ stable: true, evaluated: false, frequency_hz: 922, mode: 'mode 3 of the workpiece' });
   });

@@ -151,15 +151,16 @@ export function pointFacts([speed, depth]: Point, lobes: Lobes, limit: Row[], po
   const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(point.axial_depth_mm, depth));
   const limit_mm = here?.limit_depth_mm === undefined ? valueAt(lobes.spindle_speed_rpm, lobes.limit_mm, speed) : here.limit_depth_mm;
   const stable = here?.stable ?? (limit_mm === null || depth < limit_mm);
-  const source = !stable && here?.chatter_frequency_hz != null ? here : nearest(limit, speed);
+  const chatters = !stable && here?.dominant_frequency_hz != null;
+  const next = chatters ? undefined : nearest(limit, speed);
   return {
     stable,
     evaluated: here !== undefined,
     limit_mm,
     searched_mm: lobes.searched_depth_mm,
     margin: here?.margin ?? (limit_mm === null || limit_mm === 0 ? null : 1 - depth / limit_mm),
-    frequency_hz: source?.chatter_frequency_hz ?? null,
-    mode: modeText(source),
+    frequency_hz: (chatters ? here.dominant_frequency_hz : next?.chatter_frequency_hz) ?? null,
+    mode: modeText(chatters ? here : next),
   };
 }
 

@@ -54,7 +54,7 @@ export function sweptFacts([speed, value]: Point, sweep: LiveSweep, points: Eval
     evaluated: here !== undefined,
     spectral_radius: radius,
     intervals: intervalsText(sweep.stable[column]?.intervals ?? []),
-    frequency_hz: stable ? null : (here?.chatter_frequency_hz ?? null),
+    frequency_hz: stable ? null : (here?.dominant_frequency_hz ?? null),
     mode: stable ? '' : modeText(here),
   };
 }
