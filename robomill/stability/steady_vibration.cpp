@@ -1,7 +1,6 @@
 #include "robomill/stability/steady_vibration.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "robomill/base/units.hpp"

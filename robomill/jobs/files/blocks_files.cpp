@@ -127,13 +127,13 @@ constexpr std::pair<const char*, BlockNumber> of_load[] = {
     {"deflection_um", [](const BlockLine& r) { return r.force.deflection_m.norm() / units::um; }},
     {"surface_error_um", [](const BlockLine& r) { return r.row.cut.surface_error_m / units::um; }},
     {"surface_left_um", [](const BlockLine& r) { return r.row.surface_left_m / units::um; }},
-    {"vibration_um", [](const BlockLine& r) { return r.row.cut.vibration.amplitude_m / units::um; }},
     {"gain_margin", [](const BlockLine& r) { return r.row.cut.gain_margin; }},
     {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_5_percent_m / units::mm; }},
     {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_95_percent_m / units::mm; }},
     {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
     {"joint_torque_share", [](const BlockLine& r) { return r.row.joint_torque_share; }},
     {"cut_joint_torque_n_m", [](const BlockLine& r) { return r.row.cut_joint_torque_n_m; }},
+    {"vibration_um", [](const BlockLine& r) { return r.row.cut.vibration.amplitude_m / units::um; }},
 };
 
 std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
