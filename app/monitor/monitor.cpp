@@ -153,6 +153,9 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
         }
         if (event.suggested_axial_depth_m > 0.0) {
           fmt::print(to, " and {:.3g} mm", event.suggested_axial_depth_m / units::mm);
+          if (event.depth_limited_by == monitor::DepthLimitedBy::forced_vibration) {
+            fmt::print(to, " (limited by forced vibration)");
+          }
         }
       }
       if (!event.message.empty()) fmt::print(to, "; {}", event.message);

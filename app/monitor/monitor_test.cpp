@@ -61,16 +61,17 @@ TEST_F(MonitorVerb, NamesTheModeAndABetterSpeed) {
 }
 
 // The chart that robomill lobes writes of the same file: its deepest limit over a window of 2 % of speed, of which a
-// fifth is kept as a margin.
+// fifth is kept as a margin. Of a cut without a feed no more is known; with one forced vibration limits the depth.
 TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   wav("rec.wav", cut(6.0, true));
-  folder_.file("lobes.toml",
-               "[tool]\nteeth = 2\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
-               "feed_per_tooth_mm = 0.01\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n"
-               "[dynamics]\nx = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
-               "y = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
-               "[lobes]\nspindle_speed_rpm = [6600, 7500]\naxial_depth_mm = [0, 3]\n"
-               "grid = [20, 10]\n");
+  const std::string tool = "[tool]\nteeth = 2\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n";
+  const std::string rest =
+      "[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n"
+      "[dynamics]\nx = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
+      "y = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
+      "[lobes]\nspindle_speed_rpm = [6600, 7500]\naxial_depth_mm = [0, 3]\n"
+      "grid = [20, 10]\n";
+  folder_.file("lobes.toml", tool + rest);
   const Ended chart = robomill("lobes lobes.toml -o -");
   ASSERT_EQ(chart.exit, 0) << chart.err;
   const json lobes = json::parse(chart.out);
@@ -111,6 +112,15 @@ TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   ASSERT_FALSE(alarm.is_null());
   EXPECT_NEAR(alarm["suggested_spindle_speed_rpm"].get<double>(), best_rpm, 1e-6 * best_rpm);
   EXPECT_NEAR(alarm["suggested_axial_depth_mm"].get<double>(), 0.8 * best_mm, 1e-6 * best_mm);
+  EXPECT_EQ(alarm["depth_limited_by"], "stability");
+  folder_.file("lobes.toml", tool + "feed_per_tooth_mm = 0.01\n" + rest);
+  const Ended fed = robomill("monitor lobed.toml --input rec.wav -o events.jsonl");
+  ASSERT_EQ(fed.exit, 0) << fed.err;
+  EXPECT_NE(fed.out.find("mm (limited by forced vibration)"), std::string::npos) << fed.out;
+  const json vibrates = first_alarm();
+  EXPECT_EQ(vibrates["depth_limited_by"], "forced-vibration");
+  EXPECT_LT(vibrates["suggested_axial_depth_mm"].get<double>(),
+            0.8 * limit_at(vibrates["suggested_spindle_speed_rpm"].get<double>()));
   // Of the milling robot's modes it is one of the arm that shows up there, 7 tooth passings less 17.4 Hz: for it there
   // is no better speed.
   folder_.file("armed.toml", config_ + "modes = \"" ROBOMILL_SOURCE_DIR "/data/robot-modes.toml\"\n");

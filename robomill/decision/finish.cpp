@@ -1,10 +1,13 @@
 #include "robomill/decision/finish.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
 #include "robomill/stability/surface_error.hpp"
 
 namespace robomill::decision {
@@ -88,6 +91,42 @@ FinishDepth vibration_depth(const stability::ForcedResponse& response, double sp
     if (response.at({spindle_speed_rad_per_s, depth_m}).amplitude_m <= feed_per_tooth_m) return std::nullopt;
     return LimitedBy::forced_vibration;
   });
+}
+
+std::vector<double> vibration_depths(const stability::LobesProblem& problem,
+                                     std::span<const double> spindle_speed_rad_per_s, double deepest_m,
+                                     Progress& progress) {
+  constexpr double step_share = 0.005;
+  constexpr double most_steps = 4.0;
+  const stability::ForcedResponse response(problem);
+  const std::size_t count = spindle_speed_rad_per_s.size();
+  std::vector<double> at(count), after(count, deepest_m);  // at a speed, and between it and the next
+  const auto depth_at = [&](double speed) {
+    return std::min(deepest_m,
+                    vibration_depth(response, speed, deepest_m, problem.milling.feed_per_tooth_m).axial_depth_m);
+  };
+  progress.start("forced vibration", count);
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      progress.check();
+      const double speed = spindle_speed_rad_per_s[i];
+      at[i] = depth_at(speed);
+      if (i + 1 < count) {
+        const double next = spindle_speed_rad_per_s[i + 1];
+        const double steps = std::clamp(std::ceil((next / speed - 1.0) / step_share), 1.0, most_steps);
+        for (double k = 1.0; k < steps; ++k) {
+          after[i] = std::min(after[i], depth_at(std::lerp(speed, next, k / steps)));
+        }
+      }
+      progress.advance();
+    }
+  });
+  std::vector<double> out = at;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    out[i] = std::min(out[i], after[i]);
+    out[i + 1] = std::min(out[i + 1], after[i]);
+  }
+  return out;
 }
 
 }  // namespace robomill::decision

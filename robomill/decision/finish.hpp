@@ -1,5 +1,9 @@
 #pragma once
+#include <span>
+#include <vector>
+
 #include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -33,5 +37,14 @@ ROBOMILL_API void require_finishable(const stability::LobesProblem& problem, con
 [[nodiscard]] ROBOMILL_API FinishDepth vibration_depth(const stability::ForcedResponse& response,
                                                        double spindle_speed_rad_per_s, double deepest_m,
                                                        double feed_per_tooth_m);
+
+/// Of each speed of a chart the lowest of these depths at it and on the way to its neighbours, in steps of 0.5 % (four
+/// at most); deepest_m where nothing limits it. Between two speeds no depth is lower than that of either.
+/// @param spindle_speed_rad_per_s  increasing
+/// @throws InvalidInput as stability::ForcedResponse; Interrupted
+[[nodiscard]] ROBOMILL_API std::vector<double> vibration_depths(const stability::LobesProblem& problem,
+                                                                std::span<const double> spindle_speed_rad_per_s,
+                                                                double deepest_m,
+                                                                Progress& progress = Progress::none());
 
 }  // namespace robomill::decision

@@ -16,21 +16,22 @@ namespace robomill::decision {
 /// What keeps a cut of a program from a speed, a feed or a posture. Values are in SI units.
 enum class ProgramLimit {
   none,
-  stability,      ///< stability margin at some speed of the window, at least
-  force,          ///< peak force on the tool
-  torque,         ///< mean over a revolution, of what the spindle has
-  power,          ///< …
-  deflection,     ///< of the tip, under the mean force of a revolution
-  surface_error,  ///< surface location error, its magnitude
-  greatest_chip,  ///< chip thickness
-  least_chip,     ///< chip thickness, at least
-  cutting_speed,  ///< of the outermost point that cuts
-  spindle_range,  ///< speeds that the spindle has
-  tip_speed,      ///< of the tip along its path
-  joint_speed,    ///< of a joint
-  joint_torque,   ///< of a joint, as a share of what its drive gives
-  reversal,       ///< of a joint's load while it cuts: its backlash opens
-  posture         ///< the robot cannot stand there, or not without a collision
+  stability,         ///< stability margin at some speed of the window, at least
+  force,             ///< peak force on the tool
+  torque,            ///< mean over a revolution, of what the spindle has
+  power,             ///< …
+  deflection,        ///< of the tip, under the mean force of a revolution
+  surface_error,     ///< surface location error, its magnitude
+  greatest_chip,     ///< chip thickness
+  least_chip,        ///< chip thickness, at least
+  cutting_speed,     ///< of the outermost point that cuts
+  spindle_range,     ///< speeds that the spindle has
+  tip_speed,         ///< of the tip along its path
+  joint_speed,       ///< of a joint
+  joint_torque,      ///< of a joint, as a share of what its drive gives
+  forced_vibration,  ///< amplitude of the tip about its mean, of which the feed per tooth is allowed
+  reversal,          ///< of a joint's load while it cuts: its backlash opens
+  posture            ///< the robot cannot stand there, or not without a collision
 };
 inline constexpr Name<ProgramLimit> program_limit_names[] = {{"none", ProgramLimit::none},
                                                              {"stability", ProgramLimit::stability},
@@ -46,6 +47,7 @@ inline constexpr Name<ProgramLimit> program_limit_names[] = {{"none", ProgramLim
                                                              {"tip_speed", ProgramLimit::tip_speed},
                                                              {"joint_speed", ProgramLimit::joint_speed},
                                                              {"joint_torque", ProgramLimit::joint_torque},
+                                                             {"forced_vibration", ProgramLimit::forced_vibration},
                                                              {"reversal", ProgramLimit::reversal},
                                                              {"posture", ProgramLimit::posture}};
 [[nodiscard]] ROBOMILL_API std::string_view to_string(ProgramLimit limit);
@@ -85,7 +87,11 @@ struct FeedRange {
 struct CutLook {
   bool holds = false;
   LimitUse by = {};  ///< what does not hold; else the stability margin
-  double most_feed_per_tooth_m = std::numeric_limits<double>::infinity();  ///< >= 0; by the surface error
+  /// >= 0; by the surface error, or by forced vibration that grows faster than the feed.
+  double most_feed_per_tooth_m = std::numeric_limits<double>::infinity();
+  /// By forced vibration that edges or runout make, which the feed must exceed.
+  double least_feed_per_tooth_m = 0.0;
+  LimitUse least_by = {};
 };
 
 /// What a program asks of its machine. Its functions are called by several threads at once, and answer alike each time.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
@@ -169,6 +170,31 @@ TEST(ProgramDecision, SaysWhatStopsFasterSpeeds) {
       EXPECT_EQ(time_of(program, rejected.cut, alone(rejected.spindle_speed_rad_per_s), 0), none);
     }
   }
+}
+
+// What a look asks at least holds at every speed of the window, also after feeds are evened out, and is named where it
+// contradicts another limit.
+TEST(ProgramDecision, FeedsKeepWhatLooksAskAtLeast) {
+  int named = 0;
+  for (int seed = 1; seed <= test::seeds(200); ++seed) {
+    MadeUp program(seed);
+    program.options.feed_slack = 0.05;
+    const ProgramDecision decision = decide_program(program.cuts, program.stretches, program, program.options);
+    for (const RejectedSpeed& one : decision.rejected) {
+      if (one.stopped_by.limit == ProgramLimit::forced_vibration) ++named;
+    }
+    if (decision.status == ProgramDecision::Status::infeasible) continue;
+    for (std::size_t k = 0; k < program.stretches.size(); ++k) {
+      const double speed = decision.stretches[k].spindle_speed_rad_per_s;
+      for (std::size_t c = program.stretches[k].begin; c < program.stretches[k].end; ++c) {
+        const CutLook look = program.look(program.cuts[c].looks.front(), speed, 0);
+        const double per_tooth =
+            speed * program.options.teeth / (2.0 * std::numbers::pi) / program.cuts[c].tooth_feed_share;
+        EXPECT_GE(decision.feed_m_per_s[c], look.least_feed_per_tooth_m * per_tooth * (1.0 - 1e-9)) << seed;
+      }
+    }
+  }
+  EXPECT_GT(named, 0);
 }
 
 TEST(ProgramDecision, RejectsBadOptions) {

@@ -13,6 +13,7 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/robot/joint_load.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 
 // Method: robomill/jobs/README.md, "Every block of a program (`blocks.hpp`)"
 
@@ -65,6 +66,8 @@ struct CutStability {
   std::string regime = "none";    ///< "regenerative", "mode-coupling", "low-frequency"; "none": no limit
   bool lower_bound = false;       ///< process damping is not known and would lift the limit
   double surface_error_m = none;  ///< over all that the pass leaves, flanks that later passes take away included
+  stability::ForcedVibration vibration = {};  ///< of the tip about its mean; NaN where it chatters or is not fed
+  double vibration_share = none;              ///< its amplitude over the feed per tooth that it was found at
 };
 
 /// One block of a program.

@@ -61,6 +61,7 @@ struct Outcome {
   double revolution_torque_n_m = 0.0;      ///< largest mean over a revolution
   double sustained_power_w = 0.0;          ///< largest mean over the time that counts for the spindle's curve
   double worst_surface_error_m = none;     ///< its magnitude
+  double peak_vibration_m = none;          ///< largest amplitude of the tip about its mean
   double greatest_torque_share = 0.0;      ///< of a joint's drive; 0: not known, or no limit is given
   std::size_t reversals = 0;               ///< blocks in which the load of a joint turns round while it cuts
   std::vector<Violation> violations = {};  ///< the worst of each limit

@@ -1,12 +1,14 @@
 #include "robomill/jobs/decide.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -239,6 +241,46 @@ TEST_F(Decide, SaysWhichLimitNoSpeedKeepsAndWhere) {
   const DecideResult none = decide(contradictory);
   EXPECT_EQ(none.status, DecideResult::Status::infeasible);
   EXPECT_NE(none.reason.find("peak force"), std::string::npos) << none.reason;
+}
+
+// At 12,000 rpm two teeth pass 400 times a second, where a mode is: stable by far, and the tip vibrates by more than
+// the feed. Off it the program holds.
+TEST_F(Decide, ForcedVibrationIsALimit) {
+  const std::vector<modal::MassMode> plane = {{400.0, 0.005, 3.0}};
+  const DynamicsAt dynamics = constant_dynamics(modal::modes_from_mass(plane, plane, {{780.0, 0.03, 8.0}}));
+  const Judged judged = judge(dynamics);
+  int beyond = 0;
+  for (const BlockRow& row : judged.blocks.rows) {
+    if (!row.cuts || row.unstable() || !(row.cut.vibration_share > 1.0)) continue;
+    ++beyond;
+    EXPECT_EQ(row.cut.vibration.harmonic, 1);
+    EXPECT_NEAR(row.cut.vibration.frequency_hz, 400.0, 1e-9);
+    EXPECT_NEAR(row.cut.vibration.mode_frequency_hz, 400.0, 1e-6);
+  }
+  ASSERT_GT(beyond, 0);
+  const std::vector<std::string> warnings = block_warnings(judged.forces, judged.blocks);
+  const auto says = [](const std::string& text) {
+    return text.find("is 1 × tooth passing (400.0 Hz), in which") != std::string::npos;
+  };
+  EXPECT_TRUE(std::ranges::any_of(warnings, says)) << fmt::format("{}", fmt::join(warnings, "\n"));
+  EXPECT_NE(blocks_csv(judged.forces, judged.blocks).find(",vibration_um,"), std::string::npos);
+
+  DecideProblem asked = problem(judged, dynamics);
+  const DecideResult found = decide(asked);
+  ASSERT_EQ(found.status, DecideResult::Status::found) << found.reason;
+  const auto vibrates = [](const Violation& v) { return v.limit == decision::ProgramLimit::forced_vibration; };
+  EXPECT_TRUE(std::ranges::any_of(found.as_programmed.violations, vibrates));
+  EXPECT_TRUE(found.decided->violations.empty());
+  EXPECT_GT(found.as_programmed.peak_vibration_m, found.decided->peak_vibration_m);
+  for (const BlockRow& row : found.blocks->rows) {
+    if (!row.cuts) continue;
+    EXPECT_LE(row.cut.vibration_share, 1.005);
+  }
+  asked.machine.min_spindle_speed_rad_per_s = 11'900.0 * units::rpm;
+  asked.machine.max_spindle_speed_rad_per_s = 12'100.0 * units::rpm;
+  const DecideResult none = decide(asked);
+  EXPECT_EQ(none.status, DecideResult::Status::infeasible);
+  EXPECT_NE(none.reason.find("forced vibration"), std::string::npos) << none.reason;
 }
 
 TEST_F(Decide, FinishingPassesAreMovedWhereThatIsAskedFor) {

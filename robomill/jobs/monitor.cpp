@@ -11,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/decision/finish.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
@@ -39,6 +40,16 @@ std::vector<bool> coupling_above(const stability::LobesProblem& problem, const s
     }
   });
   return {found.begin(), found.end()};
+}
+
+/// Of each limit: how deep forced vibration lets the cut go. Empty where the cut has no feed.
+std::vector<double> vibration_of(const stability::LobesProblem& problem, const stability::LobesResult& lobes,
+                                 Progress& progress) {
+  if (!(problem.milling.feed_per_tooth_m > 0.0) || lobes.axial_depth_m.size() == 0) return {};
+  std::vector<double> speeds;
+  speeds.reserve(lobes.limit.size());
+  for (const stability::Limit& limit : lobes.limit) speeds.push_back(limit.spindle_speed_rad_per_s);
+  return decision::vibration_depths(problem, speeds, lobes.axial_depth_m.maxCoeff(), progress);
 }
 
 /// @throws InvalidInput where monitor.toml says other teeth than its lobes, or allows no speed of theirs
@@ -106,6 +117,7 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
     if (!lobes.problem.dynamics.modes.empty()) basis.modes = lobes.problem.dynamics;
     basis.workpiece = lobes.problem.workpiece_dynamics;
     basis.lobes = stability::compute_lobes(lobes.problem, lobes.options, progress);
+    basis.vibration_depth_m = vibration_of(lobes.problem, *basis.lobes, progress);
     if (basis.modes) basis.mode_coupling = coupling_above(lobes.problem, *basis.lobes, progress);
   }
   if (!file.modes.empty()) basis.modes = modal::read_modes(file.modes);

@@ -11,6 +11,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/jobs/test_cuts.hpp"
+#include "robomill/jobs/vibration_text.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -65,19 +66,7 @@ void report_vibration(PlanResult& result) {
   constexpr double warned = 0.5;
   const double share = v.amplitude_m / op.feed_per_tooth_m;
   if (share < mentioned) return;
-  std::string text = fmt::format(
-      "Forced vibration at the recommended cut: the tip moves {:.3g} µm to either side of its mean position, {:.0f} % "
-      "of "
-      "the feed per tooth. The largest part, {:.3g} µm, is {} × {} ({:.1f} Hz)",
-      v.amplitude_m / units::um, 100.0 * share, v.harmonic_m / units::um, v.harmonic,
-      v.of_tooth_passing ? "tooth passing" : "the rotation", v.frequency_hz);
-  if (v.mode.known()) {
-    const modal::ModalModel& model =
-        v.mode.of == modal::ModeOwner::workpiece ? result.cut.problem.workpiece_dynamics : result.model;
-    text += fmt::format(", in which {} ({:.1f} Hz) moves most", to_string(v.mode),
-                        model.modes[static_cast<std::size_t>(v.mode.number) - 1].frequency_hz);
-  }
-  text += '.';
+  const std::string text = "Forced vibration at the recommended cut: " + vibration_text(v, share) + ".";
   if (share < warned) {
     result.notes.push_back(text);
     return;

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/monitor.hpp"
+#include "robomill/live/advisor.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "testing/support.hpp"
 
@@ -116,6 +120,36 @@ TEST_F(Planned, WhatIsSuggestedIsStable) {
       EXPECT_LT(radius, 1.0) << seed << ' ' << off;
     }
   }
+}
+
+// In the pockets of the chart tooth passing meets the mode. With small chips it is forced vibration that limits what
+// may be suggested there.
+TEST_F(Planned, WhatIsSuggestedVibratesLessThanTheFeed) {
+  int limited = 0;
+  for (int seed = 1; seed <= test::seeds(60); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    std::string text = lobes_text(stiff);
+    text.replace(text.find("0.05"), 4, fmt::format("{:.3f}", random.uniform(0.005, 0.03)));
+    const auto lobes = folder_.file("lobes.toml", text);
+    const auto path = job(random.uniform(300.0, 900.0), random.uniform(0.3, 1.0));
+    LobesFile cut = read_lobes(lobes);
+    take_plan(cut, run_structure(path, 1));
+    monitor::MonitorEvent event;
+    event.decision.spindle_speed_rad_per_s = random.uniform(6000.0, 14000.0) * units::rpm;
+    event.decision.chatter_frequency_hz = 1.02 * cut.problem.dynamics.modes[0].frequency_hz;
+    event.decision.chatter_frequency_std_hz = 2.0;
+    live::Advisor(basis(lobes)).advise(event);
+    if (!(event.suggested_axial_depth_m > 0.0)) continue;
+    const stability::ForcedResponse response(cut.problem);
+    double widest_m = 0.0;
+    for (const double off : {0.98, 0.985, 0.99, 0.995, 1.0, 1.005, 1.01, 1.015, 1.02}) {
+      const double speed = off * event.suggested_spindle_speed_rad_per_s;
+      widest_m = std::max(widest_m, response.at({speed, event.suggested_axial_depth_m}).amplitude_m);
+    }
+    EXPECT_LE(widest_m, 1.01 * cut.problem.milling.feed_per_tooth_m) << seed;
+    if (widest_m > 0.7 * cut.problem.milling.feed_per_tooth_m) ++limited;
+  }
+  EXPECT_GT(limited, 0) << "no suggestion comes near the limit";
 }
 
 }  // namespace planned_cut_test

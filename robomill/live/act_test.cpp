@@ -7,10 +7,12 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/files/command_json.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
 
@@ -403,6 +405,36 @@ TEST(Advisor, SuggestsNoSpeedForModeCoupling) {
   EXPECT_EQ(advised(elsewhere, 545.0).no_speed, NoSpeed::none);
   basis.mode_coupling.back() = false;
   EXPECT_GT(advised(basis, 545.0).suggested_spindle_speed_rad_per_s, 0.0);
+}
+
+// Three tooth passings at 3,633 rpm, two at 5,450 and one at 10,900 rpm are 545 Hz.
+TEST(Advisor, SaysWhereForcedVibrationLimits) {
+  AdviceBasis basis{.teeth = 3, .lobes = stability::LobesResult{}, .vibration_depth_m = {4e-3, 2e-3, 4e-3}};
+  basis.lobes->axial_depth_m = Eigen::VectorXd::LinSpaced(3, 0.0, 4e-3);
+  for (const auto& [speed_rpm, depth_m] : {std::pair{5400.0, 1e-3}, {6000.0, 3e-3}, {6600.0, 1e-3}}) {
+    basis.lobes->limit.push_back({.spindle_speed_rad_per_s = speed_rpm * rpm,
+                                  .status = stability::Limit::Status::found,
+                                  .axial_depth_m = depth_m});
+  }
+  const MonitorEvent vibrates = advised(basis, 545.0);
+  EXPECT_NEAR(vibrates.suggested_spindle_speed_rad_per_s, 6000.0 * rpm, 1e-9);
+  EXPECT_EQ(vibrates.suggested_axial_depth_m, 2e-3);
+  EXPECT_EQ(vibrates.depth_limited_by, monitor::DepthLimitedBy::forced_vibration);
+  EXPECT_NE(monitor::event_line(vibrates).find("\"depth_limited_by\":\"forced-vibration\""), std::string::npos);
+  basis.vibration_depth_m.clear();
+  const MonitorEvent chatters = advised(basis, 545.0);
+  EXPECT_NEAR(chatters.suggested_axial_depth_m, 0.8 * (3e-3 - 0.02 * 6000.0 / 600.0 * 2e-3), 1e-12);
+  EXPECT_EQ(chatters.depth_limited_by, monitor::DepthLimitedBy::stability);
+  // A spindle that reaches one lobe alone, at which the tip would vibrate too much.
+  basis.vibration_depth_m = {0.5e-3, 2e-3, 4e-3};
+  basis.lowest_rad_per_s = 5430.0 * rpm;
+  basis.highest_rad_per_s = 5500.0 * rpm;
+  const MonitorEvent none = advised(basis, 545.0);
+  EXPECT_EQ(none.no_speed, NoSpeed::forced_vibration);
+  EXPECT_EQ(none.suggested_spindle_speed_rad_per_s, 0.0);
+  EXPECT_TRUE(none.stable_speeds_rad_per_s.empty());
+  basis.vibration_depth_m = {4e-3, 2e-3, 4e-3};
+  EXPECT_EQ(advised(basis, 545.0).stable_speeds_rad_per_s.size(), 1U);
 }
 
 }  // namespace act_test

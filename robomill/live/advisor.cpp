@@ -48,6 +48,8 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   options.lowest_rad_per_s = basis_.lowest_rad_per_s;
   if (basis_.highest_rad_per_s > 0.0) options.highest_rad_per_s = basis_.highest_rad_per_s;
   options.speed_window = basis_.speed_window;
+  options.depth_margin = basis_.depth_margin;
+  options.vibration_depth_m = basis_.vibration_depth_m;
   options.unfiltered_sample_rate_hz = basis_.unfiltered_sample_rate_hz;
   const monitor::Advice advice = monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s,
                                                  basis_.teeth, basis_.modes ? &*basis_.modes : nullptr,
@@ -63,9 +65,13 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   }
   if (advice.best) {
     event.suggested_spindle_speed_rad_per_s = advice.best->spindle_speed_rad_per_s;
-    event.suggested_axial_depth_m = (1.0 - basis_.depth_margin) * advice.best->axial_depth_m;
+    event.suggested_axial_depth_m = advice.best->axial_depth_m;
+    event.depth_limited_by =
+        advice.best_vibrates ? monitor::DepthLimitedBy::forced_vibration : monitor::DepthLimitedBy::stability;
   } else if (!event.stable_speeds_rad_per_s.empty()) {
     event.suggested_spindle_speed_rad_per_s = event.stable_speeds_rad_per_s.front();
+  } else if (advice.vibrating_speeds > 0) {
+    event.no_speed = NoSpeed::forced_vibration;
   }
 }
 

@@ -24,6 +24,8 @@ struct AdviceBasis {
   /// Of each limit of the lobes whether just above it modes couple, which needs no wave of an earlier tooth; empty:
   /// unknown.
   std::vector<bool> mode_coupling = {};
+  /// Of each limit of the lobes the depth up to which forced vibration stays within the feed per tooth; empty: unknown.
+  std::vector<double> vibration_depth_m = {};
   double depth_margin = 0.2;   ///< in [0, 1): share of the limit that a suggested depth keeps off …
   double speed_window = 0.02;  ///< … at every speed within this share of the suggested one
   double lowest_rad_per_s = 0.0, highest_rad_per_s = 0.0;  ///< of the spindle, lowest < highest; 0: no bound

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -69,13 +71,69 @@ void read_line(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
   name_mode(advice, last);
 }
 
+/// A chart's depths over speed, on the line from one speed to the next.
+struct Depths {
+  std::vector<double> speed_rad_per_s;
+  std::vector<double> depth_m;
+
+  [[nodiscard]] double at(double speed) const {
+    const auto above = std::ranges::lower_bound(speed_rad_per_s, speed);
+    const auto k = static_cast<std::size_t>(above - speed_rad_per_s.begin());
+    if (*above == speed) return depth_m[k];
+    const double share = (speed - speed_rad_per_s[k - 1]) / (speed_rad_per_s[k] - speed_rad_per_s[k - 1]);
+    return std::lerp(depth_m[k - 1], depth_m[k], share);
+  }
+  /// The lowest from one speed to another, as far as the chart has them; infinity: it has none.
+  [[nodiscard]] double lowest(double from, double to) const {
+    double out = std::numeric_limits<double>::infinity();
+    if (speed_rad_per_s.empty()) return out;
+    from = std::max(from, speed_rad_per_s.front());
+    to = std::min(to, speed_rad_per_s.back());
+    if (from > to) return out;
+    out = std::min(at(from), at(to));
+    const auto first = std::ranges::lower_bound(speed_rad_per_s, from);
+    for (auto k = static_cast<std::size_t>(first - speed_rad_per_s.begin());
+         k < speed_rad_per_s.size() && speed_rad_per_s[k] < to; ++k) {
+      out = std::min(out, depth_m[k]);
+    }
+    return out;
+  }
+};
+
+Depths limits_of(const stability::LobesResult& lobes) {
+  const double deepest = lobes.axial_depth_m.size() > 0 ? lobes.axial_depth_m.maxCoeff() : 0.0;
+  Depths out;
+  for (const stability::Limit& limit : lobes.limit) {
+    out.speed_rad_per_s.push_back(limit.spindle_speed_rad_per_s);
+    out.depth_m.push_back(limit.status == stability::Limit::Status::found ? limit.axial_depth_m : deepest);
+  }
+  return out;
+}
+
+/// Empty where the depths are not known.
+Depths vibration_of(const Depths& limits, const AdviceOptions& options) {
+  if (options.vibration_depth_m.empty()) return {};
+  return {.speed_rad_per_s = limits.speed_rad_per_s,
+          .depth_m = {options.vibration_depth_m.begin(), options.vibration_depth_m.end()}};
+}
+
 // Lobes far down lie close together: no more of them than can be distinguished from their neighbours.
-void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const AdviceOptions& options) {
+void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const stability::LobesResult* lobes,
+                const AdviceOptions& options) {
   const double first = units::revolution * advice.frequency_hz / teeth;
   const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
+  const Depths limits = lobes != nullptr ? limits_of(*lobes) : Depths();
+  const Depths vibration = vibration_of(limits, options);
+  // At least as deep is the cut that chatters; beyond the chart nothing is known of it.
+  const double cut_m = limits.lowest(present_rad_per_s, present_rad_per_s);
   for (int k = 1; k <= last; ++k) {
     const double speed = first / k;
     if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
+    const double kept_m = vibration.lowest(speed * (1.0 - options.speed_window), speed * (1.0 + options.speed_window));
+    if (std::isfinite(cut_m) && kept_m < cut_m) {
+      ++advice.vibrating_speeds;
+      continue;
+    }
     advice.speeds.push_back(
         {.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = units::revolution * advice.std_hz / teeth / k});
   }
@@ -88,36 +146,19 @@ void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const Advic
   }
 }
 
-/// The lowest limit over the window about speed i of a chart; between its speeds on the line from one to the next.
-double lowest_in_window(const std::vector<double>& speeds, const std::vector<double>& depths, std::size_t i,
-                        double window) {
-  double lowest = depths[i];
-  for (const int step : {-1, 1}) {
-    const double end = speeds[i] * (1.0 + step * window);
-    for (std::size_t k = i; step < 0 ? k > 0 : k + 1 < speeds.size(); k = step < 0 ? k - 1 : k + 1) {
-      const std::size_t next = step < 0 ? k - 1 : k + 1;
-      const double share = std::abs(end - speeds[k]) / std::abs(speeds[next] - speeds[k]);
-      lowest = std::min(lowest, std::lerp(depths[k], depths[next], std::min(share, 1.0)));
-      if (share <= 1.0) break;
-    }
-  }
-  return lowest;
-}
-
 void choose(Advice& advice, const stability::LobesResult& lobes, const AdviceOptions& options) {
-  const double deepest = lobes.axial_depth_m.size() > 0 ? lobes.axial_depth_m.maxCoeff() : 0.0;
-  std::vector<double> speeds, depths;
-  for (const stability::Limit& limit : lobes.limit) {
-    speeds.push_back(limit.spindle_speed_rad_per_s);
-    depths.push_back(limit.status == stability::Limit::Status::found ? limit.axial_depth_m : deepest);
-  }
-  for (std::size_t i = 0; i < speeds.size(); ++i) {
-    const double speed = speeds[i];
+  const Depths limits = limits_of(lobes);
+  const Depths vibration = vibration_of(limits, options);
+  for (const double speed : limits.speed_rad_per_s) {
     if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
-    const double depth = lowest_in_window(speeds, depths, i, options.speed_window);
-    if (!advice.best || depth > advice.best->axial_depth_m) {
-      advice.best = stability::OperatingPoint{.spindle_speed_rad_per_s = speed, .axial_depth_m = depth};
-    }
+    const double from = speed * (1.0 - options.speed_window);
+    const double to = speed * (1.0 + options.speed_window);
+    const double stable_m = (1.0 - options.depth_margin) * limits.lowest(from, to);
+    const double kept_m = vibration.lowest(from, to);
+    const double depth_m = std::min(stable_m, kept_m);
+    if (advice.best && depth_m <= advice.best->axial_depth_m) continue;
+    advice.best = stability::OperatingPoint{.spindle_speed_rad_per_s = speed, .axial_depth_m = depth_m};
+    advice.best_vibrates = kept_m < stable_m;
   }
 }
 
@@ -132,6 +173,9 @@ void AdviceOptions::validate() const {
   if (!(speed_window >= 0.0 && speed_window < 0.5)) {
     throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
   }
+  if (!(depth_margin >= 0.0 && depth_margin < 1.0)) {
+    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
+  }
   if (most_speeds < 1) throw InvalidInput("most_speeds", most_speeds, "", "must be at least 1");
   require_non_negative("unfiltered_sample_rate_hz", unfiltered_sample_rate_hz, "Hz");
 }
@@ -144,6 +188,10 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
   require_non_negative("std_hz", std_hz, "Hz");
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
+  if (!options.vibration_depth_m.empty() &&
+      (lobes == nullptr || options.vibration_depth_m.size() != lobes->limit.size())) {
+    throw InvalidInput("vibration_depth_m", "must have one depth a limit of the lobes");
+  }
   Advice out;
   out.line_hz = {frequency_hz};
   out.std_hz = std_hz;
@@ -161,7 +209,7 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
     out.frequency_hz = out.lowest_hz = frequency_hz;
   }
   if (out.line_hz.size() > 1) return out;
-  add_speeds(out, spindle_speed_rad_per_s, teeth, options);
+  add_speeds(out, spindle_speed_rad_per_s, teeth, lobes, options);
   if (lobes != nullptr) choose(out, *lobes, options);
   return out;
 }

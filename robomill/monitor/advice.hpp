@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -21,7 +22,11 @@ struct AdviceOptions {
   double lowest_rad_per_s = 0.0;      ///< >= 0; of the spindle: lowest <= speed <= highest
   double highest_rad_per_s = 2100.0;  ///< > lowest; 20,000 rpm
   double speed_window = 0.0;          ///< in [0, 0.5): the limit of a speed n is the lowest of n (1 ± speed_window)
-  int most_speeds = 6;                ///< nearest to the present one; >= 1
+  double depth_margin = 0.0;          ///< in [0, 1): share of the chart's limit that the best depth keeps off
+  /// Of each limit of the lobes the depth up to which forced vibration stays within the feed per tooth
+  /// (decision::vibration_depths); empty: not known. It needs no margin.
+  std::span<const double> vibration_depth_m = {};
+  int most_speeds = 6;  ///< nearest to the present one; >= 1
   /// Of samples that no anti-alias filter is stated for, f_s > 0: then the line may be one of f_s - f and f_s + f that
   /// is folded to f. 0: a filter is stated.
   double unfiltered_sample_rate_hz = 0.0;
@@ -44,9 +49,14 @@ struct Advice {
   /// lowest.
   double lowest_hz = 0.0;
   std::vector<StableSpeed> speeds;  ///< nearest to the present speed first
-  /// With a chart: the speed in range with the greatest limit of depth over its window, and that limit; of a depth that
-  /// is stable up to the end of the chart, that end.
+  /// Speeds that are left out of them: where the cut is as deep as the chart's limit at the present speed, which it is
+  /// since it chatters, forced vibration would exceed the feed per tooth.
+  int vibrating_speeds = 0;
+  /// With a chart: the speed in range with the greatest depth over its window, and that depth: the limit less the
+  /// margin, or where forced vibration reaches the feed per tooth. Of a depth that is stable up to the end of the chart
+  /// that end counts.
   std::optional<stability::OperatingPoint> best = {};
+  bool best_vibrates = false;  ///< it is forced vibration that keeps the best one from being deeper
 };
 
 /// The mode is that which stability::explain names for the measured line; its own frequency then counts for the speeds,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "testing/robot_modes.hpp"
@@ -121,6 +122,43 @@ TEST(Advise, TakesTheLowestLimitOfTheWindow) {
   EXPECT_EQ(safe.best->spindle_speed_rad_per_s, 900.0);
   EXPECT_NEAR(safe.best->axial_depth_m, 3.5e-3 - (0.02 * 900.0 / 80.0) * 0.6e-3, 1e-12);
   EXPECT_THROW((void)advise(600.0, 1.0, 700.0, 2, nullptr, &lobes, {.speed_window = 0.5}), InvalidInput);
+}
+
+// In the deeper pocket forced vibration is the lower limit, which needs no margin: the other one is taken. Of the
+// speeds of whole periods those are left out at which the cut, which is as deep as the limit at 700 rad/s at least,
+// vibrates too much.
+TEST(Advise, KeepsForcedVibrationWithinTheFeed) {
+  stability::LobesResult lobes;
+  lobes.axial_depth_m = Eigen::VectorXd::LinSpaced(3, 0.0, 9e-3);
+  for (const auto& [speed, depth] :
+       {std::pair{700.0, 2e-3}, {800.0, 8e-3}, {900.0, 2e-3}, {1000.0, 4e-3}, {1100.0, 2e-3}}) {
+    lobes.limit.push_back(
+        {.spindle_speed_rad_per_s = speed, .status = stability::Limit::Status::found, .axial_depth_m = depth});
+  }
+  const double first_hz = 800.0 * 2.0 / (2.0 * std::numbers::pi);  // tooth passing at 800 rad/s
+  const auto advised = [&](const std::vector<double>& vibration_m, double window = 0.0) {
+    return advise(first_hz, 1.0, 700.0, 2, nullptr, &lobes,
+                  {.speed_window = window, .depth_margin = 0.25, .vibration_depth_m = vibration_m});
+  };
+  const Advice chatter = advised({9e-3, 9e-3, 9e-3, 9e-3, 9e-3});
+  EXPECT_EQ(chatter.best->spindle_speed_rad_per_s, 800.0);
+  EXPECT_NEAR(chatter.best->axial_depth_m, 6e-3, 1e-15);
+  EXPECT_FALSE(chatter.best_vibrates);
+  EXPECT_EQ(chatter.vibrating_speeds, 0);
+  const Advice both = advised({9e-3, 1e-3, 9e-3, 9e-3, 9e-3});
+  EXPECT_EQ(both.best->spindle_speed_rad_per_s, 1000.0);
+  EXPECT_NEAR(both.best->axial_depth_m, 3e-3, 1e-15);
+  EXPECT_FALSE(both.best_vibrates);
+  EXPECT_EQ(both.vibrating_speeds, 1);
+  for (const StableSpeed& speed : both.speeds) EXPECT_GT(speed.lobe, 1);
+  const Advice vibrates = advised({9e-3, 5e-3, 9e-3, 9e-3, 9e-3});
+  EXPECT_EQ(vibrates.best->spindle_speed_rad_per_s, 800.0);
+  EXPECT_NEAR(vibrates.best->axial_depth_m, 5e-3, 1e-15);
+  EXPECT_TRUE(vibrates.best_vibrates);
+  EXPECT_EQ(vibrates.vibrating_speeds, 0);
+  // Over the window the limit beside a speed counts, on the line to the next.
+  EXPECT_NEAR(advised({9e-3, 5e-3, 1e-3, 9e-3, 9e-3}, 0.05).best->axial_depth_m, 3.4e-3, 1e-15);
+  EXPECT_THROW((void)advised({9e-3}), InvalidInput);
 }
 
 /// Modes of the tool at these frequencies, 0.5 % of damping each.

@@ -29,6 +29,7 @@ inline constexpr const char* path_columns[] = {"block",
                                                "joint_torque_share",
                                                "cut_joint_torque_n_m",
                                                "surface_error_um",
+                                               "vibration_um",
                                                "condition_number",
                                                "measured_nearby",
                                                "note"};

@@ -3,25 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/chip.hpp"
+#include "robomill/stability/steady_vibration.hpp"
+#include "robomill/stability/surface_error_spatial.hpp"
 
 namespace robomill::stability {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// ∫ e^{iwφ} dφ from..to.
-Complex turned(double w, double from_rad, double to_rad) {
-  const double length = to_rad - from_rad;
-  const double half = 0.5 * w * length;
-  const double sinc = std::abs(half) < 1e-8 ? 1.0 : std::sin(half) / half;
-  return length * sinc * std::polar(1.0, 0.5 * w * (from_rad + to_rad));
-}
+using detail::turned;
 
 /// Force on the tool per axial depth while a tooth cuts the chip slope sin φ + offset, as Σ_m c_m e^{imφ}, m = -2 … 2.
 struct AngleHarmonics {
@@ -76,34 +72,23 @@ std::vector<Eigen::Vector2cd> force_harmonics(const cutting::Milling& m, double 
   return out;
 }
 
-/// Greatest |Re(2 q e^{iωt})| over t.
-double greatest(const Eigen::Vector2cd& q) {
-  const double squares = q.squaredNorm();
-  const double turning = std::abs(q.x() * q.x() + q.y() * q.y());
-  return 2.0 * std::sqrt(0.5 * (squares + turning));
+Eigen::Vector3cd in_space(const Eigen::Vector2cd& q) {
+  return {q.x(), q.y(), 0.0};
 }
 
-/// Half the peak to peak of Σ 2 Re(q_j e^{i(j+1)t}), in the direction in which it is greatest.
+/// Half the greatest extent of Σ 2 Re(q_j e^{i(j+1)t}).
 double half_width(const std::vector<Eigen::Vector2cd>& q) {
-  constexpr int directions = 36;  // within cos 2.5° = 0.1 %
   const int samples = std::clamp(8 * static_cast<int>(q.size()), 64, 4800);
-  std::vector<Eigen::Vector2d> path(static_cast<std::size_t>(samples), Eigen::Vector2d::Zero());
+  Eigen::Matrix3Xd path = Eigen::Matrix3Xd::Zero(3, samples);
   for (int s = 0; s < samples; ++s) {
     const Complex turn = std::polar(1.0, units::revolution * s / samples);
     Complex now = turn;
     for (const Eigen::Vector2cd& part : q) {
-      path[static_cast<std::size_t>(s)] += 2.0 * (part * now).real();
+      path.col(s).head<2>() += 2.0 * (part * now).real();
       now *= turn;
     }
   }
-  double widest = 0.0;
-  for (int d = 0; d < directions; ++d) {
-    const double angle = std::numbers::pi * d / directions;
-    const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
-    const auto [low, high] = std::ranges::minmax(path, {}, [&](const Eigen::Vector2d& p) { return along.dot(p); });
-    widest = std::max(widest, along.dot(high - low));
-  }
-  return 0.5 * widest;
+  return detail::half_extent(path);
 }
 
 /// Of modes, or of measured FRFs, and of what stands across from them.
@@ -125,9 +110,24 @@ FrequencyResponse response_of(const LobesProblem& problem) {
 
 }  // namespace
 
+struct ForcedResponse::Spatial {
+  explicit Spatial(const LobesProblem& of) : problem(of), surface(problem) {}
+  LobesProblem problem;
+  detail::SpatialSurface surface;
+};
+
 ForcedResponse::ForcedResponse(const LobesProblem& problem) : milling_(problem.milling) {
   problem.validate();
-  problem.require_plane("forced vibration");
+  if (problem.drilling) throw InvalidInput("drilling", "must not be there: forced vibration is known of milling alone");
+  if (problem.spatial) {
+    if (problem.has_measured()) {
+      throw InvalidInput("dynamics.frf", "does not go with forced vibration in three directions, which needs modes",
+                         "Fit them first: robomill modes");
+    }
+    require_positive("feed_per_tooth_m", problem.spatial->feed_per_tooth_m, "m");
+    spatial_ = std::make_shared<Spatial>(problem);
+    return;
+  }
   require_positive("feed_per_tooth_m", milling_.feed_per_tooth_m, "m");
   response_ = response_of(problem);
   equal_teeth_ = milling_.tool.has_equal_pitch() && milling_.tool.has_equal_helix() && milling_.tool.runout_m == 0.0;
@@ -136,6 +136,11 @@ ForcedResponse::ForcedResponse(const LobesProblem& problem) : milling_(problem.m
 ForcedVibration ForcedResponse::at(const OperatingPoint& point) const {
   require_positive("axial_depth_m", point.axial_depth_m, "m");
   require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+  if (spatial_) {
+    constexpr double tolerance = 1e-4;  // of the spectral radius: the steady motion needs no finer mesh
+    const detail::SpatialSurface& surface = spatial_->surface;
+    return surface.vibration(point, surface.model().first_level(point, tolerance));
+  }
   const int step = equal_teeth_ ? milling_.tool.teeth : 1;
   const double base = step * point.spindle_speed_rad_per_s;
   double highest = 0.0;
@@ -148,17 +153,15 @@ ForcedVibration ForcedResponse::at(const OperatingPoint& point) const {
   std::size_t strongest = 0;
   for (std::size_t j = 0; j < force.size(); ++j) {
     q[j] = response_.at(base * static_cast<double>(j + 1)) * force[j];
-    if (greatest(q[j]) > greatest(q[strongest])) strongest = j;
+    if (detail::greatest(in_space(q[j])) > detail::greatest(in_space(q[strongest]))) strongest = j;
   }
   ForcedVibration out;
   out.amplitude_m = half_width(q);
   out.harmonic = static_cast<int>(strongest) + 1;
   out.of_tooth_passing = equal_teeth_;
   out.frequency_hz = base * out.harmonic / units::revolution;
-  out.harmonic_m = greatest(q[strongest]);
-  double mode_m = 0.0;
-  out.mode = response_.mode_of(base * out.harmonic, force[strongest], mode_m);
-  out.mode_m = 2.0 * mode_m;
+  out.harmonic_m = detail::greatest(in_space(q[strongest]));
+  detail::set_mode(out, response_.mode_of(base * out.harmonic, force[strongest]));
   return out;
 }
 

@@ -93,6 +93,40 @@ TEST(ForcedVibration, OfEqualTeethIsTheSteadyMotion) {
   }
 }
 
+// Harmonics of the force here, the exact motion between its borders there.
+TEST(ForcedVibration, OfAnUprightFlatEndInSpaceIsThatOfThePlane) {
+  Random random(5);
+  for (int seed = 0; seed < test::seeds(40); ++seed) {
+    LobesProblem plane =
+        two_modes(random.uniform(400.0, 900.0), random.uniform(1000.0, 2000.0), random.uniform(0.02, 0.3));
+    plane.milling.tool.teeth = 1 + seed % 4;
+    if (seed % 2 == 1) plane.milling.tool.helix_rad = random.uniform(0.2, 0.7);
+    plane.milling.coefficients.tangential_edge_n_per_m = random.uniform(0.0, 3e4);
+    const double radial_m = 0.5 * plane.milling.tool.diameter_m;
+    const OperatingPoint point{random.uniform(3000.0, 15000.0) * rpm, random.uniform(0.1e-3, 3e-3)};
+    LobesProblem space = plane;
+    SpatialMilling& cut = space.spatial.emplace();
+    cut.cutter.mill = plane.milling.tool;
+    cut.cut = {
+        .axial_depth_m = point.axial_depth_m, .radial_depth_m = radial_m, .direction = cutting::MillingDirection::down};
+    const cutting::ForceCoefficients& k = plane.milling.coefficients;
+    cut.coefficients = {.tangential_n_per_m2 = {k.tangential_n_per_m2},
+                        .radial_n_per_m2 = {k.radial_n_per_m2},
+                        .tangential_edge_n_per_m = {k.tangential_edge_n_per_m}};
+    cut.feed_per_tooth_m = plane.milling.feed_per_tooth_m;
+    const ForcedVibration a = ForcedResponse(plane).at(point);
+    const ForcedVibration b = ForcedResponse(space).at(point);
+    EXPECT_NEAR(b.amplitude_m, a.amplitude_m, 0.01 * a.amplitude_m) << seed;
+    EXPECT_NEAR(b.harmonic_m, a.harmonic_m, 0.01 * a.harmonic_m) << seed;
+    EXPECT_NEAR(b.mode_m, a.mode_m, 0.01 * a.mode_m) << seed;
+    EXPECT_EQ(b.harmonic, a.harmonic) << seed;
+    EXPECT_EQ(b.mode, a.mode) << seed;
+    EXPECT_TRUE(b.of_tooth_passing);
+    EXPECT_NEAR(b.frequency_hz, a.frequency_hz, 1e-9 * a.frequency_hz);
+    EXPECT_NEAR(b.mode_frequency_hz, a.mode_frequency_hz, 1e-9 * a.mode_frequency_hz);
+  }
+}
+
 // 6 × tooth passing stands within the width of a stiff mode, 2 × tooth passing beside a soft one moves the tip.
 TEST(ForcedVibration, TheNearestModeIsNotTheOneThatMoves) {
   LobesProblem p = two_modes(2400.0, 6900.0, 0.3);
@@ -103,6 +137,7 @@ TEST(ForcedVibration, TheNearestModeIsNotTheOneThatMoves) {
   EXPECT_EQ(found.harmonic, 2);
   EXPECT_NEAR(found.frequency_hz, 2300.0, 1e-9);
   EXPECT_TRUE(found.mode.number == 1 || found.mode.number == 3) << "one of the two at 2400 Hz";
+  EXPECT_NEAR(found.mode_frequency_hz, 2400.0, 1e-6);
   EXPECT_GT(found.mode_m, 0.8 * found.harmonic_m);
   EXPECT_GE(found.amplitude_m, 0.5 * found.harmonic_m);
 }

@@ -11,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/stability/frequency_domain/frf_interpolation.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/motion.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability {
@@ -174,27 +175,14 @@ double FrequencyResponse::highest_peak() const {
   return largest;
 }
 
-modal::ModeId FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,
-                                         double& displacement_m) const {
-  modal::ModeId mode;
-  displacement_m = 0.0;
+MovedMode FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force) const {
+  MovedMode most;
   for (const auto& part : parts_) {
     if (!part->modes) continue;
-    const detail::TipDynamics& tip = *part->modes;
-    for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
-      const Complex s(0.0, frequency_rad_per_s);
-      const Complex drive = (tip.left.col(k).transpose() * force).value();
-      const Complex other = (tip.left.col(k).adjoint() * force).value();
-      const double share = (tip.right.col(k) * (drive / (s - tip.pole(k))) +
-                            tip.right.col(k).conjugate() * (other / (s - std::conj(tip.pole(k)))))
-                               .norm();
-      if (share > displacement_m) {
-        displacement_m = share;
-        mode = tip.id[static_cast<std::size_t>(k)];
-      }
-    }
+    const MovedMode one = detail::most_moved<2>(*part->modes, Complex(0.0, frequency_rad_per_s), force);
+    if (one.displacement_m > most.displacement_m) most = one;
   }
-  return mode;
+  return most;
 }
 
 }  // namespace robomill::stability

@@ -21,6 +21,13 @@ struct Resonance {
   double half_width_rad_per_s = 0.0;
 };
 
+/// The mode that moves most under a force.
+struct MovedMode {
+  modal::ModeId id = {};        ///< unknown: there are no modes
+  double frequency_hz = 0.0;    ///< its natural frequency
+  double displacement_m = 0.0;  ///< ‖q‖ of its share of q e^{iωt}
+};
+
 /// The receptance at the tip, q = G(iω) F with q and F in x and y of the feed [m/N]: that of modes, at any frequency
 /// and exactly; or straight from measured FRFs, with no model between. Of several parts (tool, workpiece) the sum
 /// counts.
@@ -59,10 +66,8 @@ class ROBOMILL_API FrequencyResponse {
   [[nodiscard]] double smooth_from_rad_per_s() const { return smooth_from_; }
   /// Greatest ‖G‖ (Frobenius) at a resonance [m/N].
   [[nodiscard]] double highest_peak() const;
-  /// Of a displacement q e^{iωt} that a force F e^{iωt} makes: which mode's share is greatest, and how great [m].
-  /// Unknown where there are no modes.
-  [[nodiscard]] modal::ModeId mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,
-                                      double& displacement_m) const;
+  /// Of a displacement q e^{iωt} that a force F e^{iωt} makes: the mode whose share is greatest.
+  [[nodiscard]] MovedMode mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force) const;
 
  private:
   struct Part;

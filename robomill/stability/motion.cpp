@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "robomill/base/units.hpp"
 
@@ -44,6 +45,21 @@ BifurcationType kind_of(Complex multiplier) {
   if (std::abs(multiplier.imag()) > 1e-9 * std::abs(multiplier)) return BifurcationType::hopf;
   return multiplier.real() < 0.0 ? BifurcationType::flip : BifurcationType::fold;
 }
+
+template <int D>
+MovedMode most_moved(const TipDynamicsIn<D>& tip, Complex s, const Eigen::Matrix<Complex, D, 1>& force) {
+  MovedMode most;
+  for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
+    const double share = moved<D>(tip, k, s, force).norm();
+    if (share <= most.displacement_m) continue;
+    most = {.id = tip.id[static_cast<std::size_t>(k)],
+            .frequency_hz = std::abs(tip.pole(k)) / units::revolution,
+            .displacement_m = share};
+  }
+  return most;
+}
+template MovedMode most_moved<2>(const TipDynamicsIn<2>& tip, Complex s, const Eigen::Vector2cd& force);
+template MovedMode most_moved<3>(const TipDynamicsIn<3>& tip, Complex s, const Eigen::Vector3cd& force);
 
 Motion find_motion(const TipDynamics& tip, Complex multiplier, double period_s, const Eigen::VectorXcd& modal_state,
                    const std::function<Eigen::Vector2cd(Complex)>& force) {

@@ -2,6 +2,7 @@
 #include <complex>
 #include <functional>
 
+#include "robomill/stability/frequency_response.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
@@ -15,6 +16,15 @@ struct Motion {
 
 /// Hopf unless the multiplier is real.
 BifurcationType kind_of(std::complex<double> multiplier);
+
+/// Under a force F e^{st}: the mode whose share of the displacement is greatest.
+template <int D>
+MovedMode most_moved(const TipDynamicsIn<D>& tip, std::complex<double> s,
+                     const Eigen::Matrix<std::complex<double>, D, 1>& force);
+extern template MovedMode most_moved<2>(const TipDynamicsIn<2>& tip, std::complex<double> s,
+                                        const Eigen::Vector2cd& force);
+extern template MovedMode most_moved<3>(const TipDynamicsIn<3>& tip, std::complex<double> s,
+                                        const Eigen::Vector3cd& force);
 
 /// The motion is a sum of harmonics exp(s_j t), s_j = (ln μ + 2πij) / T; the force has the coefficient F_j, mode k the
 /// displacement R_k L_k^T F_j / (s_j - λ_k) + conjugate pole's term. Named are the mode and the harmonic whose

@@ -200,6 +200,11 @@ void check(const LobesProblem& problem, const OperatingPoint& point) {
   require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
 }
 
+void require_space(const LobesProblem& problem, const OperatingPoint& point) {
+  check(problem, point);
+  if (!problem.spatial) throw InvalidInput("spatial", "must be there: a wall in the plane has no profile");
+}
+
 /// Surfaces of stable cuts; shared by threads.
 class Surfaces {
  public:
@@ -239,10 +244,15 @@ SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& po
 }
 
 std::vector<SurfacePlace> surface_profile(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
-  check(problem, point);
-  if (!problem.spatial) throw InvalidInput("spatial", "must be there: a wall in the plane has no profile");
+  require_space(problem, point);
   const SpatialSurface surface(problem);
   return surface.profile(point, surface.model().first_level(point, tolerance));
+}
+
+SteadyCut steady_cut(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+  require_space(problem, point);
+  const SpatialSurface surface(problem);
+  return surface.steady(point, surface.model().first_level(point, tolerance));
 }
 
 SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options, const std::array<int, 2>& grid,

@@ -6,6 +6,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/lobes.hpp"
 
 // Method: robomill/stability/README.md, "The chart"
@@ -40,7 +41,9 @@ struct SurfacePoint {
          peak_to_peak_y_m = no_surface;   ///< of the tool's tip; plane: at nodes of the cut
   double peak_to_peak_z_m = no_surface;   ///< in the plane 0
   double peak_deflection_m = no_surface;  ///< greatest distance of the tip from rest, in the cut and between cuts
-  SurfacePlace place = {};                ///< where the error is
+  /// In three directions: about the mean. In the plane ForcedResponse knows it.
+  ForcedVibration vibration = {};
+  SurfacePlace place = {};  ///< where the error is
   /// In three directions: the next pass, as far on as the one before, does not take the place away again. false:
   /// nothing would remain, and the pass is taken for the last one; or the engagement is given, and later passes are not
   /// known.
@@ -75,6 +78,16 @@ struct SurfaceMap {
 [[nodiscard]] ROBOMILL_API std::vector<SurfacePlace> surface_profile(const LobesProblem& problem,
                                                                      const OperatingPoint& point,
                                                                      double tolerance = 1e-6);
+
+/// What a stable cut in three directions leaves, and how its tip vibrates.
+struct SteadyCut {
+  std::vector<SurfacePlace> profile = {};  ///< as surface_profile
+  ForcedVibration vibration = {};          ///< as ForcedResponse::at
+};
+/// Both from one steady motion.
+/// @throws InvalidInput as surface_profile
+[[nodiscard]] ROBOMILL_API SteadyCut steady_cut(const LobesProblem& problem, const OperatingPoint& point,
+                                                double tolerance = 1e-6);
 
 /// Over the options' ranges on a grid of `grid` speeds and depths, the lowest depth being one step above the range's
 /// start.

@@ -9,6 +9,7 @@
 #include "robomill/stability/collocation/finished_profile.hpp"
 #include "robomill/stability/collocation/regenerated_motion.hpp"
 #include "robomill/stability/collocation/steady_motion.hpp"
+#include "robomill/stability/steady_vibration.hpp"
 
 namespace robomill::stability::detail {
 
@@ -19,10 +20,9 @@ class SpatialSurface::Motion {
       : level_(mesh_level(level)),
         engagement_(surface.parts_.engage(point.axial_depth_m, (level_.nodes + 4) * level_.splits)),
         axes_(surface.parts_.turns_with_tool ? Eigen::Matrix3d::Identity() : engagement_.feed_from_tool),
-        steady_(surface.tip_,
-                steady_force(surface.parts_.cutter, engagement_, surface.parts_.coefficients,
-                             surface.parts_.feed_per_tooth_m, axes_),
-                point.spindle_speed_rad_per_s),
+        force_(steady_force(surface.parts_.cutter, engagement_, surface.parts_.coefficients,
+                            surface.parts_.feed_per_tooth_m, axes_)),
+        steady_(surface.tip_, force_, point.spindle_speed_rad_per_s),
         period_rad_(surface.model_.whole_rad()) {
     if (period_rad_ < 0.999 * units::revolution || surface.parts_.cutter.mill.teeth == 1) return;
     case_ = std::make_unique<CollocationCase>();
@@ -46,12 +46,14 @@ class SpatialSurface::Motion {
   [[nodiscard]] const cutting::Engagement& engagement() const { return engagement_; }
   /// The structure's axes from F.
   [[nodiscard]] Eigen::Matrix3d from_feed() const { return axes_ * engagement_.feed_from_tool.transpose(); }
+  [[nodiscard]] const SteadyForce& force() const { return force_; }
   [[nodiscard]] double period_rad() const { return period_rad_; }
 
  private:
   MeshLevel level_;
   cutting::Engagement engagement_;
   Eigen::Matrix3d axes_;  ///< from T
+  SteadyForce force_;
   SteadyMotion steady_;
   double period_rad_;
   std::unique_ptr<CollocationCase> case_;
@@ -100,11 +102,42 @@ FinishedProfile SpatialSurface::finished(const OperatingPoint& point, const Moti
   return finished_profile(milling_, point.axial_depth_m, motion.engagement(), step);
 }
 
-std::vector<SurfacePlace> SpatialSurface::profile(const OperatingPoint& point, int level) const {
-  const Motion motion(*this, point, level);
+std::vector<SurfacePlace> SpatialSurface::profile(const OperatingPoint& point, const Motion& motion) const {
   std::vector<SurfacePlace> out;
   for (const SilhouettePoint& place : finished(point, motion).places) out.push_back(at(place, motion));
   return out;
+}
+
+std::vector<SurfacePlace> SpatialSurface::profile(const OperatingPoint& point, int level) const {
+  return profile(point, Motion(*this, point, level));
+}
+
+Eigen::Matrix3Xd SpatialSurface::path(const OperatingPoint& point, const Motion& motion) const {
+  constexpr double looks_per_mode_period = 24.0;
+  const double cycles =
+      tip_.pole.cwiseAbs().maxCoeff() * motion.period_rad() / (units::revolution * point.spindle_speed_rad_per_s);
+  const auto looks = static_cast<Eigen::Index>(std::clamp(looks_per_mode_period * cycles, 48.0, 2000.0));
+  Eigen::Matrix3Xd out(3, looks);
+  for (Eigen::Index i = 0; i < looks; ++i) {
+    out.col(i) = motion.at(motion.period_rad() * static_cast<double>(i) / static_cast<double>(looks));
+  }
+  return out;
+}
+
+ForcedVibration SpatialSurface::vibration(const OperatingPoint& point, const Motion& motion,
+                                          const Eigen::Matrix3Xd& path) const {
+  return vibration_of(
+      tip_, {.force = motion.force(), .path = path, .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s});
+}
+
+ForcedVibration SpatialSurface::vibration(const OperatingPoint& point, int level) const {
+  const Motion motion(*this, point, level);
+  return vibration(point, motion, path(point, motion));
+}
+
+SteadyCut SpatialSurface::steady(const OperatingPoint& point, int level) const {
+  const Motion motion(*this, point, level);
+  return {.profile = profile(point, motion), .vibration = vibration(point, motion, path(point, motion))};
 }
 
 SurfacePoint SpatialSurface::at(const OperatingPoint& point, int level) const {
@@ -118,20 +151,12 @@ SurfacePoint SpatialSurface::at(const OperatingPoint& point, int level) const {
     if (!(std::abs(here.error_m) <= std::abs(out.place.error_m))) out.place = here;
   }
   out.surface_location_error_m = out.place.error_m;
-  constexpr double looks_per_mode_period = 16.0;
-  const double cycles =
-      tip_.pole.cwiseAbs().maxCoeff() * motion.period_rad() / (units::revolution * point.spindle_speed_rad_per_s);
-  const int looks = static_cast<int>(std::clamp(looks_per_mode_period * cycles, 32.0, 2000.0));
-  const Eigen::Matrix3d to_feed = motion.from_feed().transpose();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d high = -low;
-  out.peak_deflection_m = 0.0;
-  for (int i = 0; i < looks; ++i) {
-    const Eigen::Vector3d q = to_feed * motion.at(motion.period_rad() * i / looks);
-    low = low.cwiseMin(q);
-    high = high.cwiseMax(q);
-    out.peak_deflection_m = std::max(out.peak_deflection_m, q.norm());
-  }
+  const Eigen::Matrix3Xd tip_m = path(point, motion);
+  const Eigen::Matrix3Xd in_feed = motion.from_feed().transpose() * tip_m;
+  const Eigen::Vector3d low = in_feed.rowwise().minCoeff();
+  const Eigen::Vector3d high = in_feed.rowwise().maxCoeff();
+  out.peak_deflection_m = tip_m.colwise().norm().maxCoeff();
+  out.vibration = vibration(point, motion, tip_m);
   out.peak_to_peak_x_m = high.x() - low.x();
   out.peak_to_peak_y_m = high.y() - low.y();
   out.peak_to_peak_z_m = high.z() - low.z();

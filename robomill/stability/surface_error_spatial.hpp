@@ -16,10 +16,18 @@ class SpatialSurface {
   /// Of a cut that is stable.
   [[nodiscard]] SurfacePoint at(const OperatingPoint& point, int level) const;
   [[nodiscard]] std::vector<SurfacePlace> profile(const OperatingPoint& point, int level) const;
+  [[nodiscard]] ForcedVibration vibration(const OperatingPoint& point, int level) const;
+  /// Profile and vibration.
+  [[nodiscard]] SteadyCut steady(const OperatingPoint& point, int level) const;
   [[nodiscard]] const SpatialModel& model() const { return model_; }
 
  private:
   class Motion;
+  [[nodiscard]] std::vector<SurfacePlace> profile(const OperatingPoint& point, const Motion& motion) const;
+  /// The tip over a period, in the structure's axes.
+  [[nodiscard]] Eigen::Matrix3Xd path(const OperatingPoint& point, const Motion& motion) const;
+  [[nodiscard]] ForcedVibration vibration(const OperatingPoint& point, const Motion& motion,
+                                          const Eigen::Matrix3Xd& path) const;
   [[nodiscard]] FinishedProfile finished(const OperatingPoint& point, const Motion& motion) const;
   [[nodiscard]] SurfacePlace at(const SilhouettePoint& place, const Motion& motion) const;
 

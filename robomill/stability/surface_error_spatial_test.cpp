@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/surface_error.hpp"
 #include "testing/simulation/posture_cases.hpp"
 #include "testing/stability/problems.hpp"
@@ -280,6 +281,15 @@ double looked_up(const Leaning& drawn, const std::vector<Eigen::Vector3d>& q) {
   return worst;
 }
 
+/// Half the greatest distance between two places.
+double half_extent(const std::vector<Eigen::Vector3d>& q) {
+  double widest = 0.0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) widest = std::max(widest, (q[i] - q[j]).squaredNorm());
+  }
+  return 0.5 * std::sqrt(widest);
+}
+
 // Integrated in time, and the profile that remains found by looking: no code in common but the engagement.
 TEST(SurfaceErrorSpatial, OfLeaningBallsAndBullNosesIsWhatTheSimulationLeaves) {
   int compared = 0, unequal = 0;
@@ -294,6 +304,9 @@ TEST(SurfaceErrorSpatial, OfLeaningBallsAndBullNosesIsWhatTheSimulationLeaves) {
     double largest = 0.0;
     for (const Eigen::Vector3d& at : q) largest = std::max(largest, at.norm());
     EXPECT_NEAR(found.peak_deflection_m, largest, 0.02 * largest) << seed;  // found at 16 looks a period
+    const double extent = half_extent(q);
+    EXPECT_NEAR(found.vibration.amplitude_m, extent, 0.03 * extent) << seed;
+    EXPECT_EQ(found.vibration.amplitude_m, ForcedResponse(drawn->problem).at(drawn->point).amplitude_m) << seed;
     const cutting::FlatEndMill& mill = drawn->problem.spatial->cutter.mill;
     // Which tooth misses changes along the profile, where neither places a ring.
     const double share = mill.runout_m > 0.0 ? 0.03 : 0.01;

@@ -63,7 +63,10 @@ class MadeUp : public ProgramModel {
     const double margin = level_[look_class] + 0.8 * std::sin(40.0 * std::log(speed) + phase_[look_class] +
                                                               turn_[look_class] * options.gamma_rad[gamma]);
     CutLook out = {.holds = margin >= 0.2, .by = {ProgramLimit::stability, margin, 0.2}};
-    if (out.holds) out.most_feed_per_tooth_m = 2e-5 + 6e-5 * margin;
+    if (!out.holds) return out;
+    out.most_feed_per_tooth_m = 2e-5 + 6e-5 * margin;
+    out.least_feed_per_tooth_m = 4e-5 * (1.0 - margin);
+    out.least_by = {ProgramLimit::forced_vibration, 2e-5, 1e-5};
     return out;
   }
 
@@ -130,8 +133,9 @@ inline double time_of(const MadeUp& program, std::size_t cut, GridSpeed at, std:
     const CutLook look = program.look(program.cuts[cut].looks.front(), at.center * std::pow(1.01, k), gamma);
     if (!look.holds) return none;
     const double teeth_per_s = at.speed * program.options.teeth / (2.0 * std::numbers::pi);
-    range.most_m_per_s =
-        std::min(range.most_m_per_s, look.most_feed_per_tooth_m * teeth_per_s / program.cuts[cut].tooth_feed_share);
+    const double per_tooth = teeth_per_s / program.cuts[cut].tooth_feed_share;
+    range.most_m_per_s = std::min(range.most_m_per_s, look.most_feed_per_tooth_m * per_tooth);
+    range.least_m_per_s = std::max(range.least_m_per_s, look.least_feed_per_tooth_m * per_tooth);
   }
   const double feed = program.options.free_feed ? range.most_m_per_s : program.cuts[cut].feed_m_per_s;
   if (feed < range.least_m_per_s || feed > range.most_m_per_s) return none;

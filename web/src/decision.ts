@@ -26,6 +26,7 @@ export interface Outcome {
   sustained_power_w: Num;
   peak_deflection_um: Num;
   worst_surface_error_um: Num;
+  peak_vibration_um?: Num; // of the tip about its mean; at most the feed per tooth is allowed
   violations: Violation[];
 }
 

@@ -87,8 +87,8 @@ it('says how the tool leans where it leans', () => {
 
 it('finds the violation of each measure, and keeps limits of joints apart from those of the spindle', () => {
   const row = (limit: string, block: number) => ({ limit, block, line: null, value: 2, allowed: 1, unit: '' });
-  const outcome = { violations: [row('joint_torque', 4), row('spindle_power', 2), row('stability', 3)] } as unknown as Outcome;
-  expect(limited.map((measure) => violationOf(outcome, measure)?.block ?? null)).toEqual([3, null, null, 2, null, null]);
+  const outcome = { violations: [row('joint_torque', 4), row('spindle_power', 2), row('stability', 3), row('forced_vibration', 5)] } as unknown as Outcome;
+  expect(limited.map((measure) => violationOf(outcome, measure)?.block ?? null)).toEqual([3, null, null, 2, null, null, 5]);
 });
 
 it('says of stability what was violated: the spectral radius or the margin', () => {

@@ -62,6 +62,7 @@ export const limited: Measure[] = [
   { name: 'Sustained power', unit: 'W', limit: 'power', text: (outcome) => said(outcome.sustained_power_w) },
   { name: 'Peak deflection', unit: 'µm', limit: 'deflection', text: (outcome) => said(outcome.peak_deflection_um) },
   { name: 'Surface error', unit: 'µm', limit: 'surface_error', text: (outcome) => said(outcome.worst_surface_error_um) },
+  { name: 'Forced vibration, amplitude about the mean', unit: 'µm', limit: 'forced_vibration', text: (outcome) => said(outcome.peak_vibration_um ?? null) },
 ];
 
 export const measures: Measure[] = [

@@ -36,6 +36,7 @@ const noSpeedTexts: Record<NoSpeed, string> = {
   arm: 'no spindle speed avoids it: a mode of the arm',
   unclear: 'no spindle speed is suggested: it may be a mode of the arm',
   'mode-coupling': 'no spindle speed avoids it: modes couple through the force',
+  'forced-vibration': 'no spindle speed is suggested: the tip would vibrate by more than the feed per tooth',
   'ambiguous-alias': '', // aliasText says it
 };
 

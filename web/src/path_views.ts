@@ -26,6 +26,7 @@ const all: Quantity[] = [
   { key: 'joint_torque_share', name: 'Joint load, share of the drive', unit: '', worse: 'high' },
   { key: 'cut_joint_torque_n_m', name: 'Joint load of the cut', unit: 'N·m', worse: 'high' },
   { key: 'surface_error_um', name: 'Surface error', unit: 'µm', worse: 'high' },
+  { key: 'vibration_um', name: 'Forced vibration', unit: 'µm', worse: 'high' },
   { key: 'condition_number', name: 'Condition number', unit: '', worse: 'high' },
 ];
 

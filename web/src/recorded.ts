@@ -22,8 +22,8 @@ export interface MonitorStay extends Stated {
   to_s: number;
 }
 
-/** Why no speed is suggested: a mode of the arm, perhaps one, modes that couple through the force, or a line that may be folded. */
-export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling' | 'ambiguous-alias';
+/** Why no speed is suggested: a mode of the arm, perhaps one, modes that couple through the force, a line that may be folded, or forced vibration. */
+export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling' | 'ambiguous-alias' | 'forced-vibration';
 
 /** What the line of chatter may be that was measured, folded: empty where it is as measured. Why no speed is named. */
 export interface Folded {

@@ -39,6 +39,8 @@ double shortfall(const LimitUse& use) {
 std::optional<CutLook> Looks::known(const LookAt& at, std::size_t candidate) const {
   std::optional<CutLook> out;
   bool whole = true;
+  double least_m = 0.0;
+  LimitUse least_by;
   for (const std::size_t speed : speeds_[candidate].window) {
     const auto found = memo_.find(key(at, speed));
     if (found == memo_.end()) {
@@ -47,7 +49,15 @@ std::optional<CutLook> Looks::known(const LookAt& at, std::size_t candidate) con
     }
     const CutLook& look = found->second;
     if (!look.holds) return look;
+    if (look.least_feed_per_tooth_m > least_m) {
+      least_m = look.least_feed_per_tooth_m;
+      least_by = look.least_by;
+    }
     if (!out || limits_more(look, *out)) out = look;
+  }
+  if (out) {
+    out->least_feed_per_tooth_m = least_m;
+    out->least_by = least_by;
   }
   return whole ? out : std::nullopt;
 }

@@ -27,7 +27,8 @@ class Looks {
       : model_(model), speeds_(speeds), classes_(classes), gammas_(gammas), progress_(progress) {}
 
   /// Over the window of a candidate: the first that does not hold, else that which allows the least feed, of those
-  /// alike that which is nearest to its limit; none where some of it has not been looked at and what was holds.
+  /// alike that which is nearest to its limit, with the highest of what they ask at least; none where some of it has
+  /// not been looked at and what was holds.
   [[nodiscard]] std::optional<CutLook> known(const LookAt& at, std::size_t candidate) const;
   /// Looks at all of them over the candidate's window.
   void ask(const std::vector<LookAt>& at, std::size_t candidate);

@@ -76,19 +76,37 @@ StretchAt StretchCost::exact(const ProgramStretch& stretch, std::size_t candidat
   return out;
 }
 
-double StretchCost::most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const {
+double StretchCost::feed_at(std::size_t cut, double feed_per_tooth_m, std::size_t candidate) const {
   const double teeth_per_s = speeds_[candidate].spindle_speed_rad_per_s * options_.teeth / (2.0 * std::numbers::pi);
-  return look.most_feed_per_tooth_m * teeth_per_s / cuts_[cut].tooth_feed_share;
+  return feed_per_tooth_m * teeth_per_s / cuts_[cut].tooth_feed_share;
+}
+
+StretchCost::Feeds StretchCost::narrowed(const Feeds& feeds, std::size_t cut, const CutLook& look,
+                                         std::size_t candidate) const {
+  Feeds out = feeds;
+  const double most = feed_at(cut, look.most_feed_per_tooth_m, candidate);
+  if (most < out.most_m_per_s) {
+    out.most_m_per_s = most;
+    out.by = look.by;
+  }
+  const double least = feed_at(cut, look.least_feed_per_tooth_m, candidate);
+  if (least > out.least_m_per_s) {
+    out.least_m_per_s = least;
+    if (!feeds.empty() && out.empty() && most >= feeds.least_m_per_s) out.by = look.least_by;
+  }
+  return out;
 }
 
 void StretchCost::limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                              StretchAt& out) const {
   const std::size_t i = cut - stretch.begin;
-  const double most = most_feed(cut, look, candidate);
-  if (most >= out.most[i]) return;
-  out.most[i] = most;
-  out.most_by[i] = look.by;
-  if (most < out.least[i]) out.time = stopped(look.by, apart(out.least[i], most), cut);
+  const double most = out.most[i];
+  const Feeds feeds = narrowed({.least_m_per_s = out.least[i], .most_m_per_s = out.most[i], .by = out.most_by[i]}, cut,
+                               look, candidate);
+  out.least[i] = feeds.least_m_per_s;
+  out.most[i] = feeds.most_m_per_s;
+  if (feeds.most_m_per_s < most) out.most_by[i] = look.by;
+  if (feeds.empty()) out.time = stopped(feeds.by, apart(feeds.least_m_per_s, feeds.most_m_per_s), cut);
 }
 
 void StretchCost::at_programmed_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) {
@@ -125,15 +143,14 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
   GammaWay way(times, options_);
   const auto time_at = [&](std::size_t i, std::size_t gamma) {
     const std::size_t c = stretch.begin + i;
-    double time = times[i];
+    Feeds feeds = {.least_m_per_s = out.least[i], .most_m_per_s = out.most[i]};
     for (const std::size_t look_class : cuts_[c].looks) {
       const std::optional<CutLook> look = looks_.known({.look_class = look_class, .gamma = gamma}, candidate);
       if (!look) continue;
-      const double feed = std::min(out.most[i], most_feed(c, *look, candidate));
-      if (!look->holds || feed < out.least[i]) return no_time;
-      time = std::max(time, cuts_[c].length_m / feed);
+      feeds = narrowed(feeds, c, *look, candidate);
+      if (!look->holds || feeds.empty()) return no_time;
     }
-    return time;
+    return std::max(times[i], cuts_[c].length_m / feeds.most_m_per_s);
   };
   while (way.solve(time_at)) {
     std::vector<LookAt> unseen;
@@ -160,15 +177,14 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
   stop_along_gamma(stretch, candidate, out);
 }
 
-StretchTime StretchCost::at_gamma(std::size_t cut, std::size_t gamma, double least_m_per_s,
-                                  std::size_t candidate) const {
+StretchTime StretchCost::at_gamma(std::size_t cut, std::size_t gamma, const Feeds& feeds, std::size_t candidate) const {
   StretchTime out;
   for (const std::size_t look_class : cuts_[cut].looks) {
     const std::optional<CutLook> look = looks_.known({.look_class = look_class, .gamma = gamma}, candidate);
     if (!look) continue;
-    const double most = look->holds ? most_feed(cut, *look, candidate) : no_time;
-    if (look->holds && most >= least_m_per_s) continue;
-    const StretchTime by = stopped(look->by, look->holds ? apart(least_m_per_s, most) : 0.0, cut);
+    const Feeds here = look->holds ? narrowed(feeds, cut, *look, candidate) : Feeds{.by = look->by};
+    if (look->holds && !here.empty()) continue;
+    const StretchTime by = stopped(here.by, look->holds ? apart(here.least_m_per_s, here.most_m_per_s) : 0.0, cut);
     if (by.missed > out.missed) out = by;
   }
   return out;
@@ -183,7 +199,9 @@ void StretchCost::stop_along_gamma(const ProgramStretch& stretch, std::size_t ca
     std::vector<StretchTime> at;
     at.reserve(gammas);
     for (std::size_t g = 0; g < gammas; ++g) {
-      at.push_back(at_gamma(c, g, out.least[c - stretch.begin], candidate));
+      const std::size_t i = c - stretch.begin;
+      at.push_back(at_gamma(c, g, {.least_m_per_s = out.least[i], .most_m_per_s = out.most[i], .by = out.most_by[i]},
+                            candidate));
       farthest[g] = std::max(farthest[g], at.back(), missed_less);
     }
     no_gamma = std::max(no_gamma, *std::ranges::min_element(at, missed_less), missed_less);

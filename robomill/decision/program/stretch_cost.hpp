@@ -45,11 +45,18 @@ class StretchCost {
   void along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
   /// What stops a stretch along which there is no way of γ.
   void stop_along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) const;
+  /// The feed of a cut at a feed per tooth of what cuts.
+  [[nodiscard]] double feed_at(std::size_t cut, double feed_per_tooth_m, std::size_t candidate) const;
+  /// Feeds of a cut: those that it has and a look allows.
+  struct Feeds {
+    double least_m_per_s = 0.0, most_m_per_s = 0.0;
+    LimitUse by = {};  ///< what narrowed them last
+    [[nodiscard]] bool empty() const { return most_m_per_s < least_m_per_s; }
+  };
+  [[nodiscard]] Feeds narrowed(const Feeds& feeds, std::size_t cut, const CutLook& look, std::size_t candidate) const;
   /// What keeps a cut from γ, as far as it is known.
-  [[nodiscard]] StretchTime at_gamma(std::size_t cut, std::size_t gamma, double least_m_per_s,
+  [[nodiscard]] StretchTime at_gamma(std::size_t cut, std::size_t gamma, const Feeds& feeds,
                                      std::size_t candidate) const;
-  /// The greatest feed of a cut of what a look allows.
-  [[nodiscard]] double most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const;
   void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                   StretchAt& out) const;
   void sum_up(const ProgramStretch& stretch, StretchAt& out) const;

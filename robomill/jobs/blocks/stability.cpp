@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "robomill/modal/tip.hpp"
 #include "robomill/stability/block.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -77,8 +79,11 @@ JudgedCut judged_cut(const BlockCut& at, const modal::ModalModel& modes) {
   out.lower_bound = block.lower_bound;
   out.gain_margin = block.at.gain_margin;
   if (block.at.stable && problem.spatial->feed_per_tooth_m > 0.0) {
-    judged.surface =
-        stability::surface_profile(problem, {block.at.spindle_speed_rad_per_s, block.at.axial_depth_m}, at.tolerance);
+    stability::SteadyCut steady =
+        stability::steady_cut(problem, {block.at.spindle_speed_rad_per_s, block.at.axial_depth_m}, at.tolerance);
+    judged.surface = std::move(steady.profile);
+    out.vibration = steady.vibration;
+    out.vibration_share = steady.vibration.amplitude_m / problem.spatial->feed_per_tooth_m;
   }
   out.surface_error_m = worst_error_m(judged.surface);
   return judged;

@@ -189,8 +189,9 @@ std::vector<double> BlockModel::chosen_gamma(const program::Program& program, co
 }
 
 bool BlockModel::tighten(const ProgramDecision& choice, const std::vector<Violation>& violations) {
-  std::map<std::pair<std::size_t, std::size_t>, double> more_margin;  // of a class of a way
-  std::map<std::size_t, double> feed_share, chip_factor;              // of a cut
+  std::map<std::pair<std::size_t, std::size_t>, double> more_margin;      // of a class of a way
+  std::map<std::pair<std::size_t, std::size_t>, double> vibration_share;  // … of the feed per tooth
+  std::map<std::size_t, double> feed_share, chip_factor;                  // of a cut
   for (const Violation& v : violations) {
     const std::size_t cut = chosen_cut(choice, line_of(v.block));
     if (v.limit == ProgramLimit::stability) {
@@ -199,6 +200,12 @@ bool BlockModel::tighten(const ProgramDecision& choice, const std::vector<Violat
       if (!look_class) return false;
       double& more = more_margin[{way, *look_class}];
       more = std::max(more, v.allowed - v.value + tightening);
+    } else if (v.limit == ProgramLimit::forced_vibration) {
+      const std::size_t way = cut / lines();
+      const std::optional<std::size_t> look_class = ways_[way]->class_of(v.block);
+      if (!look_class) return false;
+      double& least = vibration_share.try_emplace({way, *look_class}, 1.0).first->second;
+      least = std::min(least, v.allowed / v.value * (1.0 - tightening));
     } else if (v.limit == ProgramLimit::least_chip) {
       double& factor = chip_factor.try_emplace(cut, 1.0).first->second;
       factor = std::max(factor, v.allowed / v.value * (1.0 + tightening));
@@ -215,6 +222,7 @@ bool BlockModel::tighten(const ProgramDecision& choice, const std::vector<Violat
     }
   }
   for (const auto& [at, more] : more_margin) ways_[at.first]->tighten_margin(at.second, more);
+  for (const auto& [at, share] : vibration_share) ways_[at.first]->tighten_vibration(at.second, share);
   for (const auto& [cut, share] : feed_share) ways_[cut / lines()]->tighten_feed(cut % lines(), share);
   for (const auto& [cut, factor] : chip_factor) ways_[cut / lines()]->tighten_chip(cut % lines(), factor);
   return true;

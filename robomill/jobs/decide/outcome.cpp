@@ -104,6 +104,10 @@ void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 
   if (problem.finish.max_surface_error_m > 0.0 && std::isfinite(surface_m)) {
     add_if_broken(out, {ProgramLimit::surface_error, block, surface_m, problem.finish.max_surface_error_m});
   }
+  if (std::isfinite(row.cut.vibration_share)) {
+    const double feed_m = load.force.feed_per_tooth_m;  // blocks that share an evaluation differ in it a little
+    add_if_broken(out, {ProgramLimit::forced_vibration, block, row.cut.vibration_share * feed_m, feed_m});
+  }
   const double chip =
       load.force.feed_per_tooth_m * cutting::greatest_chip_share(forces.program->cuts[block].engagement);
   if (chip_m[1] > 0.0) add_if_broken(out, {ProgramLimit::greatest_chip, block, chip, chip_m[1]});
@@ -174,6 +178,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
     out.greatest_torque_share =
         std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));
+    out.peak_vibration_m = std::fmax(out.peak_vibration_m, row.cut.vibration.amplitude_m);
     out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, left_surface_error_m(forces, row));
   }
   std::vector<std::size_t> turned;

@@ -12,6 +12,7 @@
 #include "robomill/jobs/blocks/stand_at.hpp"
 #include "robomill/jobs/decide/outcome.hpp"
 #include "robomill/stability/block.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
@@ -103,6 +104,7 @@ void WayModel::sort_into_classes() {
   }
   first_ = classes.first_blocks();
   more_margin_.assign(first_.size(), 0.0);
+  vibration_share_.assign(first_.size(), 1.0);
   left_share_.assign(first_.size(), 0.0);
   const std::vector<BlockRow>& rows = setting_.problem->blocks.rows;
   for (std::size_t i = 0; i < class_of_.size(); ++i) {
@@ -216,15 +218,18 @@ const WayModel::Stand& WayModel::stand(std::size_t look_class, double gamma_rad)
   return stands_.emplace(key, std::move(out)).first->second;
 }
 
+BlockCut WayModel::cut_at(std::size_t look_class, double speed) const {
+  return {.file = forces_.file,
+          .cut = forces_.program->cuts[first_[look_class]],
+          .base_from_work = forces_.cell->cell.workpiece.linear(),
+          .spindle_speed_rad_per_s = speed,
+          .tolerance = setting_.problem->blocks_options.tolerance};
+}
+
 double WayModel::margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
                            bool& stable) const {
-  const cutting::PoseEngagement& cut = forces_.program->cuts[first_[look_class]];
-  const BlockCut at = {.file = forces_.file,
-                       .cut = cut,
-                       .base_from_work = forces_.cell->cell.workpiece.linear(),
-                       .spindle_speed_rad_per_s = speed,
-                       .tolerance = setting_.problem->blocks_options.tolerance};
-  const double depth_m = engaged_depth_m(cut);
+  const BlockCut at = cut_at(look_class, speed);
+  const double depth_m = engaged_depth_m(at.cut);
   const stability::BlockStability found =
       stability::block_stability(block_problem(at, modes), speed, depth_m,
                                  {.tolerance = at.tolerance,
@@ -245,23 +250,44 @@ ClassLook WayModel::compute(std::size_t look_class, double speed, double gamma_r
   const Stand& there = stand(look_class, gamma_rad);
   out.reachable = there.reachable;
   if (!out.reachable) return out;
-  out.margin = margin_at(look_class, there.modes, speed, deepest(), out.stable);
-  if (!(most_surface_m() > 0.0) || !out.stable || left_share_[look_class] == 0.0) return out;
-  const std::size_t block = first_[look_class];
-  cutting::PoseEngagement cut = forces_.program->cuts[block];
-  const BlockCut at = {.file = forces_.file,
-                       .cut = cut,
-                       .base_from_work = forces_.cell->cell.workpiece.linear(),
-                       .spindle_speed_rad_per_s = speed,
-                       .tolerance = setting_.problem->blocks_options.tolerance};
-  const double depth_m = engaged_depth_m(cut);
-  for (std::size_t k = 0; k < 2; ++k) {
-    cut.feed_speed_m_per_s = loads_[block].feed_per_tooth_m.at(2 * k) * teeth_per_s(speed);
-    const stability::SurfacePoint surface =
-        stability::surface_of_stable_cut(block_problem(at, there.modes), {speed, depth_m}, at.tolerance);
-    out.surface_m.at(k) = left_share_[look_class] * std::abs(surface.surface_location_error_m);
+  const bool surface = most_surface_m() > 0.0 && left_share_[look_class] > 0.0;
+  // One steady motion costs a small part of the search for a limit: what vibrates too much needs none.
+  if (!surface) {
+    add_steady_motion(look_class, there.modes, speed, out);
+    decision::CutLook ignored;
+    out.stable = !keep_vibration(look_class, out, ignored) && is_stable(look_class, there.modes, speed);
+    if (out.stable) return out;
   }
+  out.margin = margin_at(look_class, there.modes, speed, deepest(), out.stable);
+  if (surface && out.stable) add_steady_motion(look_class, there.modes, speed, out);
   return out;
+}
+
+bool WayModel::is_stable(std::size_t look_class, const modal::ModalModel& modes, double speed) const {
+  const BlockCut at = cut_at(look_class, speed);
+  return stability::evaluate_point(block_problem(at, modes), {.tolerance = at.tolerance},
+                                   {.spindle_speed_rad_per_s = speed, .axial_depth_m = engaged_depth_m(at.cut)})
+             .spectral_radius < 1.0;
+}
+
+void WayModel::add_steady_motion(std::size_t look_class, const modal::ModalModel& modes, double speed,
+                                 ClassLook& out) const {
+  const std::size_t block = first_[look_class];
+  if (!(loads_[block].feed_per_tooth_m[0] > 0.0)) return;
+  const bool surface = most_surface_m() > 0.0 && left_share_[look_class] > 0.0;
+  const BlockCut at = cut_at(look_class, speed);
+  const stability::OperatingPoint point = {.spindle_speed_rad_per_s = speed, .axial_depth_m = engaged_depth_m(at.cut)};
+  for (std::size_t k = 0; k < 2; ++k) {
+    stability::LobesProblem problem = block_problem(at, modes);
+    problem.spatial->feed_per_tooth_m = loads_[block].feed_per_tooth_m.at(2 * k);
+    if (!surface) {
+      out.vibration_m.at(k) = stability::ForcedResponse(problem).at(point).amplitude_m;
+      continue;
+    }
+    const stability::SurfacePoint left = stability::surface_of_stable_cut(problem, point, at.tolerance);
+    out.surface_m.at(k) = left_share_[look_class] * std::abs(left.surface_location_error_m);
+    out.vibration_m.at(k) = left.vibration.amplitude_m;
+  }
 }
 
 ClassLook WayModel::known_or_computed(std::size_t look_class, double speed, double gamma_rad) const {
@@ -290,23 +316,61 @@ decision::CutLook WayModel::look(std::size_t look_class, double speed, double ga
     out.by = {ProgramLimit::posture, 1.0, 0.0};
     return out;
   }
+  const bool quiet = keep_vibration(look_class, found, out);
+  if (!quiet && found.stable) return out;
   // No look finds more than the depths that it searches can show.
   const double asked =
       std::min(setting_.problem->machine.depth_margin + more_margin_[look_class], 1.0 - 1.01 / deepest());
-  out.by = {ProgramLimit::stability, found.margin, asked};
+  const LimitUse margin = {ProgramLimit::stability, found.margin, asked};
   out.holds = found.stable && found.margin >= asked;
+  if (!out.holds || out.by.limit == ProgramLimit::none) out.by = margin;
+  out.holds = out.holds && keep_surface(look_class, found, out);
+  return out;
+}
+
+bool WayModel::keep_surface(std::size_t look_class, const ClassLook& found, decision::CutLook& out) const {
   const double allowed = most_surface_m() * (1.0 - class_reserve);
-  if (!out.holds || !(allowed > 0.0) || std::isnan(found.surface_m[1])) return out;
-  if (found.surface_m[1] <= allowed) return out;  // where it falls with the feed the exact run looks at it
+  if (!(allowed > 0.0) || std::isnan(found.surface_m[1])) return true;
+  if (found.surface_m[1] <= allowed) return true;  // where it falls with the feed the exact run looks at it
   const std::array<double, 3>& feed = loads_[first_[look_class]].feed_per_tooth_m;
-  out.by = {ProgramLimit::surface_error, found.surface_m[0], most_surface_m()};
+  const LimitUse use = {ProgramLimit::surface_error, found.surface_m[0], most_surface_m()};
   if (found.surface_m[0] > allowed) {
-    out.holds = false;
-    return out;
+    out.by = use;
+    return false;
   }
   const double share = (allowed - found.surface_m[0]) / (found.surface_m[1] - found.surface_m[0]);
-  out.most_feed_per_tooth_m = std::lerp(feed[0], feed[2], share);
-  return out;
+  const double most_m = std::lerp(feed[0], feed[2], share);
+  if (most_m >= out.most_feed_per_tooth_m) return true;
+  out.most_feed_per_tooth_m = most_m;
+  out.by = use;
+  return true;
+}
+
+bool WayModel::keep_vibration(std::size_t look_class, const ClassLook& found, decision::CutLook& out) const {
+  if (std::isnan(found.vibration_m[0]) || std::isnan(found.vibration_m[1])) return true;
+  const std::array<double, 3>& all = loads_[first_[look_class]].feed_per_tooth_m;
+  const std::array<double, 2> feed = {all[0], all[2]};
+  const double share = (1.0 - class_reserve) * vibration_share_[look_class];
+  // The amplitude is convex in the feed: between the ends what is too much lies below its chord.
+  std::array<double, 2> over = {};
+  for (std::size_t k = 0; k < 2; ++k) over.at(k) = found.vibration_m.at(k) - share * feed.at(k);
+  if (over[0] <= 0.0 && over[1] <= 0.0) return true;
+  const std::size_t worse = over[0] / feed[0] > over[1] / feed[1] ? 0 : 1;
+  const LimitUse use = {ProgramLimit::forced_vibration, found.vibration_m.at(worse), feed.at(worse)};
+  if (over[0] > 0.0 && over[1] > 0.0) {
+    const std::size_t nearer = 1 - worse;
+    out.by = {ProgramLimit::forced_vibration, found.vibration_m.at(nearer), feed.at(nearer)};
+    return false;
+  }
+  const double at_m = std::lerp(feed[0], feed[1], over[0] / (over[0] - over[1]));
+  if (over[0] > 0.0) {
+    out.least_feed_per_tooth_m = at_m;
+    out.least_by = use;
+  } else {
+    out.most_feed_per_tooth_m = at_m;
+    out.by = use;
+  }
+  return true;
 }
 
 double WayModel::margin(std::size_t look_class, double speed, double gamma_rad) const {

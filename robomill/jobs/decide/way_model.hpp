@@ -12,6 +12,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/decision/program_decision.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/blocks/stability.hpp"
 #include "robomill/jobs/decide.hpp"
 #include "robomill/jobs/decide/loads.hpp"
 #include "robomill/jobs/decide/units.hpp"
@@ -39,8 +40,11 @@ struct BlockPace {
 struct ClassLook {
   bool reachable = false;
   bool stable = false;
-  double margin = 0.0;
+  double margin = 0.0;                           ///< not looked at where a stable cut vibrates too much at both ends
   std::array<double, 2> surface_m = {0.0, 0.0};  ///< magnitudes at the ends of the class's range of feeds; NaN: none
+  /// Of forced vibration at these ends; NaN: not known.
+  std::array<double, 2> vibration_m = {std::numeric_limits<double>::quiet_NaN(),
+                                       std::numeric_limits<double>::quiet_NaN()};
 };
 
 /// What every way of a program is asked with.
@@ -81,6 +85,8 @@ class WayModel {
   void set_radius(std::size_t block, double radius_m) { pace_[block].radius_m = radius_m; }
   /// Asks so much more margin of a class.
   void tighten_margin(std::size_t look_class, double more) { more_margin_[look_class] += more; }
+  /// Allows a class that share of the vibration that it may have.
+  void tighten_vibration(std::size_t look_class, double share) { vibration_share_[look_class] *= share; }
 
  private:
   /// What vibrates where a class's first block stands turned by γ.
@@ -99,6 +105,14 @@ class WayModel {
   [[nodiscard]] double margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
                                  bool& stable) const;
   [[nodiscard]] ClassLook compute(std::size_t look_class, double speed, double gamma_rad) const;
+  [[nodiscard]] BlockCut cut_at(std::size_t look_class, double speed) const;
+  [[nodiscard]] bool is_stable(std::size_t look_class, const modal::ModalModel& modes, double speed) const;
+  /// Surface error and vibration at the ends of the range of feeds.
+  void add_steady_motion(std::size_t look_class, const modal::ModalModel& modes, double speed, ClassLook& out) const;
+  /// The feeds per tooth at which the surface error stays within its limit; false: not at the least.
+  [[nodiscard]] bool keep_surface(std::size_t look_class, const ClassLook& found, decision::CutLook& out) const;
+  /// The feeds per tooth at which forced vibration stays within them; false: at neither end of the range.
+  [[nodiscard]] bool keep_vibration(std::size_t look_class, const ClassLook& found, decision::CutLook& out) const;
   [[nodiscard]] ClassLook known_or_computed(std::size_t look_class, double speed, double gamma_rad) const;
   /// Depths that looks search up to, as a multiple of the cut's.
   [[nodiscard]] double deepest() const;
@@ -108,14 +122,15 @@ class WayModel {
   const WaySetting& setting_;
   const ForcesResult& forces_;
   ProgramUnits units_;
-  std::vector<BlockLoad> loads_ = {};       ///< one a block
-  std::vector<BlockPace> pace_ = {};        ///< one a block
-  std::vector<double> feed_share_ = {};     ///< of each line, <= 1: tightened
-  std::vector<double> chip_factor_ = {};    ///< of each line, >= 1: tightened
-  std::vector<std::size_t> class_of_ = {};  ///< of each block
-  std::vector<std::size_t> first_ = {};     ///< block of each class
-  std::vector<double> more_margin_ = {};    ///< of each class
-  std::vector<double> left_share_ = {};     ///< of each class: what of its surface error remains at the end
+  std::vector<BlockLoad> loads_ = {};         ///< one a block
+  std::vector<BlockPace> pace_ = {};          ///< one a block
+  std::vector<double> feed_share_ = {};       ///< of each line, <= 1: tightened
+  std::vector<double> chip_factor_ = {};      ///< of each line, >= 1: tightened
+  std::vector<std::size_t> class_of_ = {};    ///< of each block
+  std::vector<std::size_t> first_ = {};       ///< block of each class
+  std::vector<double> more_margin_ = {};      ///< of each class
+  std::vector<double> vibration_share_ = {};  ///< of each class, <= 1: of the feed per tooth
+  std::vector<double> left_share_ = {};       ///< of each class: what of its surface error remains at the end
   mutable std::mutex mutex_;
   mutable std::map<std::pair<std::size_t, double>, Stand> stands_ = {};
   mutable std::map<LookKey, ClassLook> looks_ = {};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/units.hpp"
@@ -12,6 +13,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/vibration_text.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -50,6 +52,22 @@ std::string chatter_warning(const ForcesResult& forces, const ProgramBlocks& blo
   }
   return text + fmt::format(", {} chatter of {} at {:.4g} Hz.", row.cut.regime, to_string(row.cut.mode),
                             row.cut.chatter_frequency_hz);
+}
+
+/// Empty: the tip of no block vibrates by more than the feed per tooth.
+std::string vibration_warning(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  const auto share = [](const BlockRow& row) { return row.cuts ? row.cut.vibration_share : CutStability::none; };
+  const auto count = std::ranges::count_if(blocks.rows, [&](const BlockRow& row) { return share(row) > 1.0; });
+  if (count == 0) return {};
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < blocks.rows.size(); ++i) {
+    if (!(share(blocks.rows[i]) <= share(blocks.rows[worst])) && share(blocks.rows[i]) > 0.0) worst = i;
+  }
+  const CutStability& cut = blocks.rows[worst].cut;
+  return fmt::format(
+      "In {} of {} blocks that cut forced vibration exceeds the feed per tooth: teeth leave the cut and meet it again, "
+      "which neither force nor stability describe. In {}, the worst, {}.",
+      count, blocks.cutting, named_block(forces, worst), vibration_text(cut.vibration, cut.vibration_share));
 }
 
 std::string unmatched_warning(const ForcesResult& forces, const ProgramBlocks& blocks, std::size_t first) {
@@ -115,6 +133,7 @@ constexpr std::pair<const char*, BlockNumber> of_load[] = {
     {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
     {"joint_torque_share", [](const BlockLine& r) { return r.row.joint_torque_share; }},
     {"cut_joint_torque_n_m", [](const BlockLine& r) { return r.row.cut_joint_torque_n_m; }},
+    {"vibration_um", [](const BlockLine& r) { return r.row.cut.vibration.amplitude_m / units::um; }},
 };
 
 std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
@@ -210,6 +229,7 @@ std::string block_note(const BlockResult& force, const BlockRow& row) {
 std::vector<std::string> block_warnings(const ForcesResult& forces, const ProgramBlocks& blocks) {
   std::vector<std::string> out;
   if (blocks.unstable > 0) out.push_back(chatter_warning(forces, blocks));
+  if (std::string text = vibration_warning(forces, blocks); !text.empty()) out.push_back(std::move(text));
   if (const auto unmatched = std::ranges::find_if(blocks.rows, [](const BlockRow& row) { return row.unmatched > 0; });
       unmatched != blocks.rows.end()) {
     out.push_back(unmatched_warning(forces, blocks, static_cast<std::size_t>(unmatched - blocks.rows.begin())));

@@ -38,6 +38,7 @@ constexpr LimitWords limit_words[] = {
     {ProgramLimit::tip_speed, "feed", "mm/min", units::mm / units::minute, false},
     {ProgramLimit::joint_speed, "speed of a joint", "°/s", units::deg, false},
     {ProgramLimit::joint_torque, "torque of a joint", "of its drive's", 1.0, false},
+    {ProgramLimit::forced_vibration, "forced vibration", "µm", units::um, false},
     {ProgramLimit::reversal, "reversal of a joint's load", "", 1.0, false},
 };
 
@@ -82,6 +83,7 @@ Json outcome_json(const Outcome& outcome, const DecideResult& result, const Forc
       {"sustained_power_w", number(outcome.sustained_power_w)},
       {"peak_deflection_um", number(outcome.peak_deflection_m / units::um)},
       {"worst_surface_error_um", number(outcome.worst_surface_error_m / units::um)},
+      {"peak_vibration_um", number(outcome.peak_vibration_m / units::um)},
       {"greatest_torque_share", outcome.greatest_torque_share > 0.0 ? number(outcome.greatest_torque_share) : Json()},
       {"reversals", outcome.reversals},
       {"violations", std::move(violations)}};

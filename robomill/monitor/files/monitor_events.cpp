@@ -75,6 +75,7 @@ std::string event_line(const MonitorEvent& event) {
   json["spindle_speed_std_rpm"] = io::positive(d.spindle_speed_std_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = io::positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
   json["suggested_axial_depth_mm"] = io::positive(event.suggested_axial_depth_m, units::mm);
+  json["depth_limited_by"] = text_or_null(std::string(name_in(depth_limited_by_names, event.depth_limited_by)));
   json["stable_spindle_speeds_rpm"] = io::Json::array();
   for (const double speed : event.stable_speeds_rad_per_s) {
     json["stable_spindle_speeds_rpm"].push_back(io::number(speed / units::rpm));

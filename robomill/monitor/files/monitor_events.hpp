@@ -15,16 +15,26 @@ namespace robomill::monitor {
 
 /// Why no speed is suggested although chatter's frequency is known.
 enum class NoSpeed {
-  none,            ///< one is suggested, or chatter's frequency or the number of teeth is not known
-  arm,             ///< the mode that chatters is one of the arm: teeth pass too often for any lobe of it
-  unclear,         ///< several modes explain it about as well, one of the arm among them
-  mode_coupling,   ///< it needs no wave of an earlier tooth: no tooth passing ends it
-  ambiguous_alias  ///< without an anti-alias filter the line may be folded, and the modes do not say from where
+  none,             ///< one is suggested, or chatter's frequency or the number of teeth is not known
+  arm,              ///< the mode that chatters is one of the arm: teeth pass too often for any lobe of it
+  unclear,          ///< several modes explain it about as well, one of the arm among them
+  mode_coupling,    ///< it needs no wave of an earlier tooth: no tooth passing ends it
+  ambiguous_alias,  ///< without an anti-alias filter the line may be folded, and the modes do not say from where
+  forced_vibration  ///< of every lobe tooth passing makes the tip vibrate by more than the feed per tooth
 };
 inline constexpr Name<NoSpeed> no_speed_names[] = {{"arm", NoSpeed::arm},
                                                    {"unclear", NoSpeed::unclear},
                                                    {"mode-coupling", NoSpeed::mode_coupling},
-                                                   {"ambiguous-alias", NoSpeed::ambiguous_alias}};
+                                                   {"ambiguous-alias", NoSpeed::ambiguous_alias},
+                                                   {"forced-vibration", NoSpeed::forced_vibration}};
+/// What keeps a suggested depth from being greater.
+enum class DepthLimitedBy {
+  none,             ///< no depth is suggested
+  stability,        ///< the chart's limit, or its end, less the margin
+  forced_vibration  ///< it reaches the feed per tooth
+};
+inline constexpr Name<DepthLimitedBy> depth_limited_by_names[] = {
+    {"stability", DepthLimitedBy::stability}, {"forced-vibration", DepthLimitedBy::forced_vibration}};
 
 /// What a monitor reports.
 struct MonitorEvent {
@@ -41,6 +51,7 @@ struct MonitorEvent {
   std::vector<double> line_hz = {};
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   double suggested_axial_depth_m = 0.0;            ///< 0: none
+  DepthLimitedBy depth_limited_by = DepthLimitedBy::none;
   std::vector<double> stable_speeds_rad_per_s = {};
   NoSpeed no_speed = NoSpeed::none;
   std::string command = {};  ///< that followed by a rule of [act]; empty: none

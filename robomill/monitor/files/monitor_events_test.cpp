@@ -62,7 +62,7 @@ TEST(MonitorEvents, HoldWhatIsUnknownAsNull) {
   const auto json = nlohmann::json::parse(event_line(event));
   for (const char* key : {"score", "energy_entropy", "chatter_frequency_hz", "chatter_frequency_std_hz", "mode",
                           "suggested_spindle_speed_rpm", "suggested_axial_depth_mm", "spindle_speed_rpm", "hidden",
-                          "no_speed", "command"}) {
+                          "no_speed", "depth_limited_by", "command"}) {
     EXPECT_TRUE(json[key].is_null()) << key;
   }
   EXPECT_TRUE(json["faults"].empty());

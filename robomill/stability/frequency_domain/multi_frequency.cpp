@@ -231,11 +231,10 @@ class Solver {
         largest = displacement;
         motion.frequency_hz = std::abs(omega) / (2.0 * pi);
       }
-      double share = 0.0;
-      const modal::ModeId mode = response_.mode_of(omega, harmonic, share);
-      if (share > largest_share) {
-        largest_share = share;
-        motion.mode = mode;
+      const MovedMode moved = response_.mode_of(omega, harmonic);
+      if (moved.displacement_m > largest_share) {
+        largest_share = moved.displacement_m;
+        motion.mode = moved.id;
       }
     }
     return motion;

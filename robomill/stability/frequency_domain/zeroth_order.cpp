@@ -88,8 +88,7 @@ FrequencyLimit limit_at(const cutting::Milling& milling, const FrequencyResponse
   matrix(lowest.frequency, work);
   Eigen::VectorXcd force;
   nearest_eigenvalue(work, 1.0 / lowest.gain, force);
-  double displacement_m = 0.0;
-  limit.mode = response.mode_of(lowest.frequency, force, displacement_m);
+  limit.mode = response.mode_of(lowest.frequency, force).id;
   return limit;
 }
 
