@@ -43,7 +43,7 @@ StretchTime StretchCost::bound(const ProgramStretch& stretch, std::size_t candid
 
 StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candidate) const {
   StretchAt out;
-  out.time.time_s = 0.0;
+  bool holds = true;
   const double speed = speeds_[candidate].spindle_speed_rad_per_s;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     FeedRange range = model_.feeds(c, speed);
@@ -55,12 +55,13 @@ StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candi
       broken = broken_by(feed, range, c);
       range.least_m_per_s = range.most_m_per_s = feed;
     }
+    holds = holds && !broken;
     if (broken && broken->missed >= out.time.missed) out.time = *broken;
     out.least.push_back(std::min(range.least_m_per_s, range.most_m_per_s));  // apart by rounding at most, else stopped
     out.most.push_back(range.most_m_per_s);
     out.most_by.push_back(range.most_by);
-    out.time.time_s += cuts_[c].length_m / range.most_m_per_s;
   }
+  if (holds) sum_up(stretch, out);
   return out;
 }
 
@@ -120,7 +121,7 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
   std::vector<double> times;
   times.reserve(stretch.end - stretch.begin);
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    times.push_back(cuts_[c].length_m / out.most[c - stretch.begin]);
+    times.push_back(cuts_[c].time_s(out.most[c - stretch.begin]));
   }
   GammaWay way(times, options_);
   const auto time_at = [&](std::size_t i, std::size_t gamma) {
@@ -131,7 +132,7 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
       if (!look) continue;
       const double feed = std::min(out.most[i], most_feed(c, *look, candidate));
       if (!look->holds || feed < out.least[i]) return no_time;
-      time = std::max(time, cuts_[c].length_m / feed);
+      time = std::max(time, cuts_[c].time_s(feed));
     }
     return time;
   };
@@ -193,9 +194,11 @@ void StretchCost::stop_along_gamma(const ProgramStretch& stretch, std::size_t ca
 }
 
 void StretchCost::sum_up(const ProgramStretch& stretch, StretchAt& out) const {
-  out.time.time_s = 0.0;
+  out.time.time_s = out.time.feed_time_s = 0.0;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    out.time.time_s += cuts_[c].length_m / out.most[c - stretch.begin];
+    const double feed = out.most[c - stretch.begin];
+    out.time.time_s += cuts_[c].time_s(feed);
+    out.time.feed_time_s += cuts_[c].length_m / feed;
   }
 }
 

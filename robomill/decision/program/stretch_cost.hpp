@@ -12,10 +12,11 @@ inline constexpr double no_time = std::numeric_limits<double>::infinity();
 
 /// Time of a stretch at a speed, or what stops it.
 struct StretchTime {
-  double time_s = no_time;   ///< infinite: a limit stops it
-  LimitUse stopped_by = {};  ///< … this one
-  double missed = 0.0;       ///< … by this share of it, > 0
-  std::size_t cut = 0;       ///< … here
+  double time_s = no_time;       ///< of ProgramCut::time_s; infinite: a limit stops it
+  LimitUse stopped_by = {};      ///< … this one
+  double missed = 0.0;           ///< … by this share of it, > 0
+  std::size_t cut = 0;           ///< … here
+  double feed_time_s = no_time;  ///< as time_s, at the feeds
 };
 
 /// One stretch at one speed.
@@ -52,6 +53,7 @@ class StretchCost {
   [[nodiscard]] double most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const;
   void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                   StretchAt& out) const;
+  /// The times of a stretch that nothing stops.
   void sum_up(const ProgramStretch& stretch, StretchAt& out) const;
 
   const std::vector<ProgramCut>& cuts_;
