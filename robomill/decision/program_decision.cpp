@@ -255,6 +255,12 @@ LimitUse FeedRange::contradiction() const {
   return out;
 }
 
+LimitUse CutLook::at(double feed_per_tooth_m) const {
+  LimitUse out = by;
+  out.value += by_rise_per_m * (feed_per_tooth_m - by_feed_per_tooth_m);
+  return out;
+}
+
 std::string_view to_string(ProgramLimit limit) {
   return name_in(program_limit_names, limit);
 }

@@ -82,8 +82,8 @@ struct ProgramStretch {
 /// Feeds that a cut may have at a speed, as far as they need no dynamics.
 struct FeedRange {
   double least_m_per_s = 0.0, most_m_per_s = 0.0;  ///< none where least > most
-  LimitUse least_by = {},
-           most_by = {};  ///< what limits them; value: of loads at the least feed, else at the programmed one
+  /// What limits them, with the value at the programmed feed; of loads where the range is empty at its least feed.
+  LimitUse least_by = {}, most_by = {};
   /// What keeps a range that is empty from a feed: most_by, with the value at the least feed of it.
   [[nodiscard]] ROBOMILL_API LimitUse contradiction() const;
 };
@@ -93,6 +93,10 @@ struct CutLook {
   bool holds = false;
   LimitUse by = {};  ///< what does not hold; else the stability margin
   double most_feed_per_tooth_m = std::numeric_limits<double>::infinity();  ///< >= 0; by the surface error
+  /// Where that is finite: `by` at this feed per tooth, and the rise of its value with the feed.
+  double by_feed_per_tooth_m = 0.0, by_rise_per_m = 0.0;
+  /// `by` at a feed per tooth.
+  [[nodiscard]] ROBOMILL_API LimitUse at(double feed_per_tooth_m) const;
 };
 
 /// What a program asks of its machine. Its functions are called by several threads at once, and answer alike each time.

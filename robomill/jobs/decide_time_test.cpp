@@ -97,9 +97,8 @@ TEST_F(DecideTime, AProgramThatTakesTheRobotLessThanEveryChoiceStays) {
     EXPECT_EQ(result.program->blocks[i].duration_s, before.blocks[i].duration_s);
     EXPECT_EQ(result.program->blocks[i].spindle_speed_rad_per_s, before.blocks[i].spindle_speed_rad_per_s);
   }
-  EXPECT_TRUE(std::ranges::any_of(result.notes, [](const std::string& note) {
-    return note.find("stay as programmed") != std::string::npos;
-  }));
+  EXPECT_TRUE(std::ranges::any_of(
+      result.notes, [](const std::string& note) { return note.find("stay as programmed") != std::string::npos; }));
   // Where the program breaks a limit it does not stay.
   asked.options.max_force_n = 0.9 * result.as_programmed.peak_force_n;
   const DecideResult slower = decide(asked);

@@ -82,6 +82,15 @@ double StretchCost::most_feed(std::size_t cut, const CutLook& look, std::size_t 
   return look.most_feed_per_tooth_m * teeth_per_s / cuts_[cut].tooth_feed_share;
 }
 
+StretchTime StretchCost::too_fast(std::size_t cut, const CutLook& look, double least_m_per_s,
+                                  std::size_t candidate) const {
+  const double most = most_feed(cut, look, candidate);
+  const double least_per_tooth_m = look.most_feed_per_tooth_m > 0.0 && most > 0.0
+                                       ? look.most_feed_per_tooth_m * least_m_per_s / most
+                                       : look.by_feed_per_tooth_m;
+  return stopped(look.at(least_per_tooth_m), apart(least_m_per_s, most), cut);
+}
+
 void StretchCost::limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                              StretchAt& out) const {
   const std::size_t i = cut - stretch.begin;
@@ -89,7 +98,7 @@ void StretchCost::limit_feed(const ProgramStretch& stretch, std::size_t cut, con
   if (most >= out.most[i]) return;
   out.most[i] = most;
   out.most_by[i] = look.by;
-  if (most < out.least[i]) out.time = stopped(look.by, apart(out.least[i], most), cut);
+  if (most < out.least[i]) out.time = too_fast(cut, look, out.least[i], candidate);
 }
 
 void StretchCost::at_programmed_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) {
@@ -169,7 +178,7 @@ StretchTime StretchCost::at_gamma(std::size_t cut, std::size_t gamma, double lea
     if (!look) continue;
     const double most = look->holds ? most_feed(cut, *look, candidate) : no_time;
     if (look->holds && most >= least_m_per_s) continue;
-    const StretchTime by = stopped(look->by, look->holds ? apart(least_m_per_s, most) : 0.0, cut);
+    const StretchTime by = look->holds ? too_fast(cut, *look, least_m_per_s, candidate) : stopped(look->by, 0.0, cut);
     if (by.missed > out.missed) out = by;
   }
   return out;

@@ -51,6 +51,9 @@ class StretchCost {
                                      std::size_t candidate) const;
   /// The greatest feed of a cut of what a look allows.
   [[nodiscard]] double most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const;
+  /// What stops a cut whose feed a look limits below what it must have.
+  [[nodiscard]] StretchTime too_fast(std::size_t cut, const CutLook& look, double least_m_per_s,
+                                     std::size_t candidate) const;
   void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                   StretchAt& out) const;
   /// The times of a stretch that nothing stops.
