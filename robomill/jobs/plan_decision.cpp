@@ -223,8 +223,7 @@ void take_one_speed(const CellFile& cell, DecideOptions& options, PlanResult& re
   }
   result.notes.push_back(
       fmt::format("decide.speed_changes allows several spindle speeds; a robot program carries out one, since "
-                  "spindle.output of {} only "
-                  "switches the spindle on.",
+                  "spindle.output of {} only switches the spindle on.",
                   cell.path.filename().string()));
 }
 

@@ -67,8 +67,7 @@ void report_vibration(PlanResult& result) {
   if (share < mentioned) return;
   std::string text = fmt::format(
       "Forced vibration at the recommended cut: the tip moves {:.3g} µm to either side of its mean position, {:.0f} % "
-      "of "
-      "the feed per tooth. The largest part, {:.3g} µm, is {} × {} ({:.1f} Hz)",
+      "of the feed per tooth. The largest part, {:.3g} µm, is {} × {} ({:.1f} Hz)",
       v.amplitude_m / units::um, 100.0 * share, v.harmonic_m / units::um, v.harmonic,
       v.of_tooth_passing ? "tooth passing" : "the rotation", v.frequency_hz);
   if (v.mode.known()) {
@@ -185,8 +184,7 @@ void cover_spindle(PlanResult& result) {
   result.cut.options.grid[0] = nodes_for(result.cut.options.grid[0], asked[1] - asked[0], high - low);
   std::string text = fmt::format(
       "The chart of {} goes from {:.0f} to {:.0f} rpm, the spindle from {:.0f} to {:.0f} rpm: {:.0f} to {:.0f} rpm "
-      "were "
-      "searched.",
+      "were searched.",
       result.cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
       (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
   if (from < low) text += " Slower ones were not.";

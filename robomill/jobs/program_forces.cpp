@@ -245,8 +245,7 @@ void warn_of_program(const ForcesFile& file, const ProgramForces& out, std::vect
   if (std::ranges::none_of(out.blocks, cuts)) {
     warnings.emplace_back(
         "No block cuts: the program does not touch the stock. Compare where the stock and the program stand in the "
-        "work "
-        "frame.");
+        "work frame.");
     return;
   }
   std::vector<double> feeds_m;
