@@ -65,9 +65,9 @@ struct ProgramCut {
   /// What the machine makes of it, where that was measured: lost_s + feed_part · length / feed.
   double lost_s = 0.0, feed_part = 1.0;  ///< >= 0; in [0, 1]
   /// Infinite at no feed.
-  [[nodiscard]] double time_s(double feed_m_per_s) const {
-    if (!(feed_m_per_s > 0.0)) return std::numeric_limits<double>::infinity();
-    return lost_s + feed_part * length_m / feed_m_per_s;
+  [[nodiscard]] double time_s(double at_feed_m_per_s) const {
+    if (!(at_feed_m_per_s > 0.0)) return std::numeric_limits<double>::infinity();
+    return lost_s + feed_part * length_m / at_feed_m_per_s;
   }
 };
 
