@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/base/progress.hpp"
+#include "robomill/jobs/plan.hpp"
 #include "robomill/serve/serve.hpp"
 
 namespace robomill::app {
@@ -21,7 +22,7 @@ struct Common {
   std::filesystem::path report;  ///< .html or .json; empty: none
   bool quiet = false;
   int threads = 0;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = jobs::default_seed;
 
   [[nodiscard]] bool to_stdout() const { return output == "-"; }
   [[nodiscard]] bool wants_summary() const { return !quiet && !to_stdout(); }

@@ -311,6 +311,9 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   Input input = open_input(command, file, ended);
   monitor::validate(file);
   const live::AdviceBasis basis = jobs::read_advice_basis(file, progress);
+  if (!common.quiet) {
+    for (const std::string& note : basis.notes) fmt::print(stderr, "{}\n", printable(note));
+  }
   const live::Advisor advisor(basis);
   Outlets outlets(command, common, file, input.is_live);
   live::Session session(file,

@@ -140,18 +140,34 @@ std::optional<double> CuttingConditions::feed_at(double cutter_diameter_m) const
   return std::lerp(y[i - 1], y[i], (cutter_diameter_m - x[i - 1]) / (x[i] - x[i - 1]));
 }
 
+namespace {
+
+/// How well a set serves a kind of cutter.
+int fit_of(const PublishedCoefficients& set, CutterKind kind) {
+  return (set.has_radial() ? 2 : 0) + (!set.kind || *set.kind == kind ? 1 : 0);
+}
+
+}  // namespace
+
 std::optional<std::size_t> best_set(const Material& material, CutterKind kind) {
   std::optional<std::size_t> best;
   std::pair<int, double> best_rank = {-1, 0.0};
   for (std::size_t i = 0; i < material.coefficients.size(); ++i) {
     const PublishedCoefficients& set = material.coefficients[i];
-    const bool fits = !set.kind || *set.kind == kind;
-    const std::pair<int, double> rank = {(set.has_radial() ? 2 : 0) + (fits ? 1 : 0), compared_force_n_per_m(set)};
+    const std::pair<int, double> rank = {fit_of(set, kind), compared_force_n_per_m(set)};
     if (best && rank <= best_rank) continue;
     best = i;
     best_rank = rank;
   }
   return best;
+}
+
+std::size_t sets_alike(const Material& material, CutterKind kind) {
+  const std::optional<std::size_t> best = best_set(material, kind);
+  if (!best) return 0;
+  const int fit = fit_of(material.coefficients[*best], kind);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      material.coefficients, [&](const PublishedCoefficients& set) { return fit_of(set, kind) == fit; }));
 }
 
 SetSpread spread_of_sets(const Material& material) {

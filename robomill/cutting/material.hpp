@@ -117,6 +117,9 @@ struct Material {
 /// depths and loads that it does not. The chip is the same whatever the cut, so that every file of a job gets one set.
 [[nodiscard]] ROBOMILL_API std::optional<std::size_t> best_set(const Material& material, CutterKind kind);
 
+/// How many sets serve a kind of cutter as well as the one of best_set, but for the force.
+[[nodiscard]] ROBOMILL_API std::size_t sets_alike(const Material& material, CutterKind kind);
+
 /// How far the sets of a material that are lines lie apart, and how many those are.
 struct SetSpread {
   std::size_t sets = 0;

@@ -51,6 +51,7 @@ std::vector<OneSpeed> speeds_in_common(std::size_t stretches, const ProgramOptio
 /// A speed that was not taken, with the share by which it misses what stops it.
 struct Missed {
   RejectedSpeed speed = {};
+  double time_s = 0.0;  ///< of its cuts, ProgramCut::time_s
   double share = 0.0;
 };
 
@@ -62,7 +63,9 @@ std::optional<Missed> missed_at(const SpeedWay& way, OneSpeed stretches, std::si
     const std::optional<StretchTime> seen = way.row(k).seen(candidate);
     looked = looked && seen;
     const bool holds = seen && std::isfinite(seen->time_s);
-    out.speed.cutting_time_s += holds ? seen->time_s : way.row(k).bound_s(candidate);
+    const StretchTime time = holds ? *seen : way.row(k).bound(candidate);
+    out.time_s += time.time_s;
+    out.speed.cutting_time_s += time.feed_time_s;
     if (!seen || holds || seen->missed <= out.share) continue;
     out.share = seen->missed;
     out.speed.stretch = k;
@@ -83,8 +86,7 @@ std::vector<RejectedSpeed> rejections(const SpeedWay& way, OneSpeed stretches, c
     one->speed.spindle_speed_rad_per_s = speeds[j].spindle_speed_rad_per_s;
     all.push_back(*one);
   }
-  std::ranges::stable_sort(all, {},
-                           [&](const Missed& one) { return taken > 0.0 ? one.speed.cutting_time_s : one.share; });
+  std::ranges::stable_sort(all, {}, [&](const Missed& one) { return taken > 0.0 ? one.time_s : one.share; });
   std::vector<RejectedSpeed> out;
   out.reserve(all.size());
   for (const Missed& one : all) out.push_back(one.speed);
@@ -105,7 +107,7 @@ bool has_no_speed(const SpeedWay& way, OneSpeed stretches, std::size_t speeds) {
 void explain(const std::vector<ProgramCut>& cuts, const ProgramStretch& stretch, const StretchAt& at,
              DecidedStretch& out) {
   std::vector<double> spent(std::size(program_limit_names), 0.0);
-  const auto time_of = [&](std::size_t c) { return cuts[c].length_m / at.most[c - stretch.begin]; };
+  const auto time_of = [&](std::size_t c) { return cuts[c].time_s(at.most[c - stretch.begin]); };
   const auto limit_of = [&](std::size_t c) { return at.most_by[c - stretch.begin].limit; };
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) spent[static_cast<std::size_t>(limit_of(c))] += time_of(c);
   const auto limit = static_cast<ProgramLimit>(std::ranges::max_element(spent) - spent.begin());
@@ -152,6 +154,10 @@ void check_cuts(const std::vector<ProgramCut>& cuts, const std::vector<ProgramSt
     require_positive((name + "length_m").c_str(), cuts[c].length_m, "m");
     require_positive((name + "feed_m_per_s").c_str(), cuts[c].feed_m_per_s, "m/s");
     require_positive((name + "tooth_feed_share").c_str(), cuts[c].tooth_feed_share, "");
+    require_non_negative((name + "lost_s").c_str(), cuts[c].lost_s, "s");
+    if (!(cuts[c].feed_part >= 0.0 && cuts[c].feed_part <= 1.0)) {
+      throw InvalidInput(name + "feed_part", cuts[c].feed_part, "", "must be in [0, 1]");
+    }
     if (cuts[c].looks.empty()) throw InvalidInput(name + "looks", "must name a class of engagements");
   }
   check_stretches(cuts.size(), stretches);
@@ -190,7 +196,7 @@ void put_gamma(const std::vector<ProgramCut>& cuts, const Taken& stretch, const 
   const std::vector<std::size_t>& group = stretch.at->group;
   const auto time_of = [&](std::size_t i) {
     const std::size_t c = stretch.made.begin + i;
-    return cuts[c].length_m / out.feed_m_per_s[c];
+    return cuts[c].time_s(out.feed_m_per_s[c]);
   };
   for (std::size_t first = 0; first < group.size();) {
     std::size_t last = first;
@@ -228,7 +234,7 @@ void put_together(const std::vector<ProgramCut>& cuts, const SpeedWay& way, cons
     put_gamma(cuts, taken[k], options, out);
     DecidedStretch& stretch = out.stretches[k];
     for (std::size_t c = taken[k].made.begin; c < taken[k].made.end; ++c) {
-      stretch.cutting_time_s += cuts[c].length_m / out.feed_m_per_s[c];
+      stretch.cutting_time_s += cuts[c].time_s(out.feed_m_per_s[c]);
     }
     out.cutting_time_s += stretch.cutting_time_s;
     if (k > 0 && options.ramp_rad_per_s2 > 0.0) {
@@ -246,6 +252,12 @@ LimitUse FeedRange::contradiction() const {
   const bool as_feed = out.limit == ProgramLimit::greatest_chip || out.limit == ProgramLimit::tip_speed ||
                        out.limit == ProgramLimit::joint_speed;
   if (as_feed && most_m_per_s > 0.0) out.value = out.allowed * least_m_per_s / most_m_per_s;
+  return out;
+}
+
+LimitUse CutLook::at(double feed_per_tooth_m) const {
+  LimitUse out = by;
+  out.value += by_rise_per_m * (feed_per_tooth_m - by_feed_per_tooth_m);
   return out;
 }
 

@@ -64,6 +64,13 @@ struct ProgramCut {
   double feed_m_per_s = 0.0;            ///< > 0; as programmed
   double tooth_feed_share = 1.0;        ///< > 0; feed of what cuts over that of the tip
   std::vector<std::size_t> looks = {};  ///< classes of its engagements, of ProgramModel::look
+  /// What the machine makes of it, where that was measured: lost_s + feed_part · length / feed.
+  double lost_s = 0.0, feed_part = 1.0;  ///< >= 0; in [0, 1]
+  /// Infinite at no feed.
+  [[nodiscard]] double time_s(double at_feed_m_per_s) const {
+    if (!(at_feed_m_per_s > 0.0)) return std::numeric_limits<double>::infinity();
+    return lost_s + feed_part * length_m / at_feed_m_per_s;
+  }
 };
 
 /// Cuts on end, without air between them: the unit of a spindle speed.
@@ -77,8 +84,8 @@ struct ProgramStretch {
 /// Feeds that a cut may have at a speed, as far as they need no dynamics.
 struct FeedRange {
   double least_m_per_s = 0.0, most_m_per_s = 0.0;  ///< none where least > most
-  LimitUse least_by = {},
-           most_by = {};  ///< what limits them; value: of loads at the least feed, else at the programmed one
+  /// What limits them, with the value at the programmed feed; of loads where the range is empty at its least feed.
+  LimitUse least_by = {}, most_by = {};
   /// What keeps a range that is empty from a feed: most_by, with the value at the least feed of it.
   [[nodiscard]] ROBOMILL_API LimitUse contradiction() const;
 };
@@ -89,9 +96,13 @@ struct CutLook {
   LimitUse by = {};  ///< what does not hold; else the stability margin
   /// >= 0; by the surface error, or by forced vibration that grows faster than the feed.
   double most_feed_per_tooth_m = std::numeric_limits<double>::infinity();
+  /// Where that is finite: `by` at this feed per tooth, and the rise of its value with the feed.
+  double by_feed_per_tooth_m = 0.0, by_rise_per_m = 0.0;
   /// By forced vibration that edges or runout make, which the feed must exceed.
   double least_feed_per_tooth_m = 0.0;
   LimitUse least_by = {};
+  /// `by` at a feed per tooth.
+  [[nodiscard]] ROBOMILL_API LimitUse at(double feed_per_tooth_m) const;
 };
 
 /// What a program asks of its machine. Its functions are called by several threads at once, and answer alike each time.
@@ -135,19 +146,20 @@ struct ROBOMILL_API ProgramOptions {
 /// A stretch as decided.
 struct DecidedStretch {
   double spindle_speed_rad_per_s = 0.0;
-  double cutting_time_s = 0.0;
-  std::size_t way = 0;       ///< 0: as the program makes it; k: ProgramStretch::others[k - 1]
-  LimitUse limited_by = {};  ///< of the cut that gives away most time to its limit
+  double cutting_time_s = 0.0;  ///< of its cuts, ProgramCut::time_s
+  std::size_t way = 0;          ///< 0: as the program makes it; k: ProgramStretch::others[k - 1]
+  LimitUse limited_by = {};     ///< of the cut that gives away most time to its limit
   std::size_t limiting_cut = 0;
 };
 
 /// A speed that was not taken.
 struct RejectedSpeed {
   double spindle_speed_rad_per_s = 0.0;
-  std::size_t stretch = 0;      ///< one speed for all: that which is stopped
-  double cutting_time_s = 0.0;  ///< of the stretch, one speed for all: of all; at least where a limit stops it
-  LimitUse stopped_by = {};     ///< none: it is slower; of several ways that were looked at the one that comes nearest
-  std::size_t cut = 0;          ///< where, of that way
+  std::size_t stretch = 0;  ///< one speed for all: that which is stopped
+  /// At the feeds, of the stretch, one speed for all: of all; at least where a limit stops it.
+  double cutting_time_s = 0.0;
+  LimitUse stopped_by = {};  ///< none: it is slower; of several ways that were looked at the one that comes nearest
+  std::size_t cut = 0;       ///< where, of that way
 };
 
 struct ProgramDecision {
@@ -169,7 +181,7 @@ struct ProgramDecision {
 
 /// The spindle speed of every stretch, the way in which it is made, the feed of every cut and γ along them with the
 /// least time
-///     Σ length / feed + Σ |Δn| / ramp
+///     Σ ProgramCut::time_s(feed) + Σ |Δn| / ramp
 /// such that every cut keeps its limits. Speeds are a grid; on it the answer is exact: a shortest path through
 /// stretches × ways × speeds (and, of each, through cuts × γ) is sought with bounds in place of what has not been
 /// looked at, its unseen nodes are looked at, and so on until it has none. Feeds are then evened out: the fewest

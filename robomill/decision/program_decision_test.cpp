@@ -58,6 +58,33 @@ TEST(ProgramDecision, TakesAtMostTwoPercentLongerThanExhaustiveSearch) {
   RecordProperty("found", found);
 }
 
+// The same where a machine was measured, on which some cuts gain little or nothing by their feed.
+TEST(ProgramDecision, SearchesTheTimeOfTheMachineWhereItIsKnown) {
+  int found = 0, faster = 0;
+  for (int seed = 1; seed <= test::seeds(200); ++seed) {
+    MadeUp program(seed);
+    program.options.feed_slack = 0.0;
+    const ProgramDecision by_feeds = decide_program(program.cuts, program.stretches, program, program.options);
+    program.measure();
+    const ProgramDecision decision = decide_program(program.cuts, program.stretches, program, program.options);
+    EXPECT_EQ(decision.status, by_feeds.status);
+    if (decision.status == ProgramDecision::Status::infeasible) continue;
+    ++found;
+    const double time_s = decision.cutting_time_s + decision.ramp_time_s;
+    EXPECT_LE(time_s, 1.02 * exhaustive(program)) << "seed " << seed;
+    double by_feeds_s = by_feeds.ramp_time_s;
+    double at_feeds_s = 0.0;
+    for (std::size_t c = 0; c < program.cuts.size(); ++c) {
+      by_feeds_s += program.cuts[c].time_s(by_feeds.feed_m_per_s[c]);
+      at_feeds_s += program.cuts[c].time_s(decision.feed_m_per_s[c]);
+    }
+    EXPECT_NEAR(decision.cutting_time_s, at_feeds_s, 1e-9 * at_feeds_s);
+    if (time_s < 0.999 * by_feeds_s) ++faster;
+  }
+  EXPECT_GT(found, 5);
+  EXPECT_GT(faster, 0);
+}
+
 TEST(ProgramDecision, KeepsEveryLimitOverTheWindow) {
   for (int seed = 1; seed <= test::seeds(200); ++seed) {
     const MadeUp program(seed);

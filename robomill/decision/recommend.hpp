@@ -54,6 +54,9 @@ struct SpindleCapacity {
 [[nodiscard]] ROBOMILL_API double depth_of_torque_m(const std::function<double(double)>& mean_torque_n_m,
                                                     double torque_n_m, double deepest_m);
 
+/// What is kept where nobody says otherwise: share of the limit that a depth keeps off, at every speed within so much.
+inline constexpr double default_depth_margin = 0.2, default_speed_window = 0.02;
+
 /// What recommend needs to know of the cut and how careful it is.
 struct RecommendOptions {
   int teeth = 0;                   ///< >= 1; required
@@ -67,10 +70,10 @@ struct RecommendOptions {
   double min_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max
   double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
   std::vector<SpindleCapacity> spindle =
-      {};                        ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
-  double depth_margin = 0.2;     ///< in [0, 1); depth <= (1 - depth_margin) · limit …
-  double speed_window = 0.02;    ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
-  int alternatives = 3;          ///< >= 0
+      {};  ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
+  double depth_margin = default_depth_margin;  ///< in [0, 1); depth <= (1 - depth_margin) · limit …
+  double speed_window = default_speed_window;  ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
+  int alternatives = 3;                        ///< >= 0
   double distinct_speed = 0.05;  ///< of alternatives: |n - n'| >= distinct_speed · n' for every n' already chosen
 
   ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field

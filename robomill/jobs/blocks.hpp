@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -30,9 +31,11 @@ struct PostureDynamics {
 using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
 
 /// Of the cell's measured postures, or of its arm's numbers alone (posture.hpp).
+/// @param pushed                    the base's axes along which cuts push by more than a little
 /// @param warnings, notes, assumed  for the user are added
 /// @throws InvalidInput as cell_dynamics, or with the cell's file if nothing is known to vibrate; Interrupted
-[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings,
+[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, const std::array<bool, 3>& pushed,
+                                                       std::vector<std::string>& warnings,
                                                        std::vector<std::string>& notes,
                                                        std::vector<Assumption>& assumed,
                                                        Progress& progress = Progress::none());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -18,6 +19,7 @@
 #include "robomill/cutting/static_deflection.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/summary.hpp"
 #include "robomill/robot/pose.hpp"
@@ -409,6 +411,23 @@ TEST_F(Blocks, SaysWhatIsMissing) {
   EXPECT_NE(slow.find("line 4 of the program cuts without one"), std::string::npos) << slow;
   const std::string lobes = test::rejection([&] { static_cast<void>(run("lobes = \"lobes.toml\"\n")); });
   EXPECT_NE(lobes.find("needs one of hits, frf, modes and assembly"), std::string::npos) << lobes;
+}
+
+// Hits along z are asked for where a cut pushes along it.
+TEST_F(Blocks, AnUprightFlatEndHardlyPushesAlongItsAxis) {
+  write_program();
+  const std::string slot = io::read_file(folder_.at("part.ngc"));
+  const std::string plunge = "G21 G90 G94\nS12000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG0 Z5\nM2\n";
+  const auto pushed = [&](const std::string& kind, const std::string& program) {
+    return pushed_axes(test_support::forces_along(folder_,
+                                                  {.cell = test_support::arm_cell(source, 2e6),
+                                                   .forces = test_support::forces_file({.kind = kind}),
+                                                   .program = program},
+                                                  {}));
+  };
+  EXPECT_EQ(pushed("flat-end", slot), (std::array{true, true, false}));
+  EXPECT_EQ(pushed("ball-end", slot), (std::array{true, true, true}));
+  EXPECT_EQ(pushed("flat-end", plunge), (std::array{true, true, true}));
 }
 
 }  // namespace blocks_test

@@ -205,6 +205,24 @@ double size_of(const Proposal& proposal) {
   return std::hypot(proposal.shift_m.norm() / 0.1, proposal.turn_rad / (10.0 * units::deg));
 }
 
+// The margin of a summary can be computed from its line.
+TEST(CellCheck, SaysWhatItsMarginIsAShareOf) {
+  CellCheck check;
+  check.limits.min_position(5) = -350.0 * units::deg;
+  check.limits.max_position(5) = 350.0 * units::deg;
+  check.placement.poses = 1;
+  path::Margin& margin = check.placement.choice.margin;
+  margin = {.least = 50.0 / 180.0, .block = 0, .joint = 5, .position = robot::Position6::Zero()};
+  margin.position(5) = 300.0 * units::deg;
+  const std::string joint = summary(check);
+  EXPECT_NE(joint.find("margin 0.278, of joint 6: 50.00° to its limit of 350°, of 180.00°"), std::string::npos)
+      << joint;
+  margin = {.least = 0.215, .block = 0, .joint = -1, .position = robot::Position6::Zero()};
+  const std::string singular = summary(check);
+  EXPECT_NE(singular.find("margin 0.215, to a singularity: 1 / 4.65, the condition number"), std::string::npos)
+      << singular;
+}
+
 // Each proposal, typed into the cell, passes; the nearest place that could pass is not much nearer than the first.
 TEST(CellCheck, ProposesWorkpiecePosesThatWork) {
   const Folder folder;

@@ -12,6 +12,7 @@
 #include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/decide/apply.hpp"
+#include "robomill/jobs/decide/as_it_is.hpp"
 #include "robomill/jobs/decide/block_model.hpp"
 #include "robomill/jobs/decide/collisions.hpp"
 #include "robomill/jobs/decide/compensated.hpp"
@@ -28,6 +29,8 @@ using decision::ProgramLimit;
 
 /// Choices that the exact run may send back, and those that need none: the robot cannot stand so.
 constexpr int most_rounds = 4, most_detours = 60;
+/// Another choice is run where it promises to save this share of the time of the best so far.
+constexpr double worth_a_run = 0.01;
 
 std::string at_block(const DecideProblem& problem, std::size_t block) {
   return " in " + named_block(problem.forces, block);
@@ -132,6 +135,16 @@ struct Chosen {
   std::optional<NearMiss> miss;  ///< of the program as it is
 };
 
+/// A choice that keeps every limit as it was run.
+struct Kept {
+  Chosen chosen;
+  Tried tried;
+  Outcome outcome;
+  std::vector<RejectedAlternative> alternatives;
+  /// What it is judged by, where the robot's time is known.
+  [[nodiscard]] double time_s() const { return outcome.robot_time_s + chosen.choice.ramp_time_s; }
+};
+
 class Decider {
  public:
   Decider(const DecideProblem& problem, Progress& progress)
@@ -143,39 +156,49 @@ class Decider {
     const JudgedRun programmed(problem_, problem_.forces, problem_.blocks);
     out_.as_programmed = outcome_of(programmed, model_.chip_m());
     std::vector<Violation> of_motion;
-    out_.as_programmed.greatest_torque_share =
-        std::max(out_.as_programmed.greatest_torque_share, check_motion(programmed, {}, of_motion));
-    std::optional<Chosen> found = find();
+    model_.learn_programmed(on_robot(programmed, {}, out_.as_programmed, of_motion));
+    std::optional<Kept> found = find();
     if (found) {
-      out_.reason.clear();
+      if (of_motion.empty()) prefer_program(*found);
+      keep(*found);
+      const ProgramDecision& choice = found->chosen.choice;
       if (problem_.options.compensate) compensate_found(problem_, model_, out_, progress_);
-      keep_stretches(model_, found->choice, out_);
+      keep_stretches(model_, choice, out_);
       if (problem_.blocks_options.scan_points > 0) {
         out_.blocks->scans = limit_scans(*out_.forces, out_.blocks->worst, problem_.dynamics, problem_.blocks_options);
       }
     }
-    out_.gamma_map = gamma_map(problem_, model_, found ? &found->choice : nullptr, out_, progress_);
+    out_.gamma_map = gamma_map(problem_, model_, found ? &found->chosen.choice : nullptr, out_, progress_);
     out_.evaluations = model_.evaluations();
     return std::move(out_);
   }
 
  private:
-  /// The best choice that keeps every limit when it is run.
-  std::optional<Chosen> find() {
+  /// Of the choices that keep every limit when they are run the one that takes least time.
+  std::optional<Kept> find() {
+    std::optional<Kept> best;
     for (int round = 0; round < most_rounds; ++round) {
       std::optional<Chosen> chosen = choose();
-      if (!chosen) return std::nullopt;
+      if (!chosen) break;
+      const double time_s = model_.time_s(chosen->choice);
+      if (best && !(time_s < (1.0 - worth_a_run) * model_.time_s(best->chosen.choice))) break;
       Tried tried = run_exactly(problem_, chosen->standing, progress_);
       ++out_.exact_runs;
       const JudgedRun run(problem_, tried.forces, tried.blocks);
       std::vector<Violation> violations = violations_of(run, model_.chip_m());
-      double torque_share = 0.0;
-      if (violations.empty()) torque_share = check_motion(run, chosen->gamma_offset_rad, violations);
       if (violations.empty()) {
-        out_.decided = outcome_of(run, model_.chip_m());
-        out_.decided->greatest_torque_share = std::max(out_.decided->greatest_torque_share, torque_share);
-        keep(*chosen, std::move(tried));
-        return chosen;
+        Outcome outcome = outcome_of(run, model_.chip_m());
+        const RobotRun robot = on_robot(run, chosen->gamma_offset_rad, outcome, violations);
+        if (violations.empty()) {
+          const bool learnt = model_.learn_times(robot, chosen->choice);
+          Kept kept = {.chosen = std::move(*chosen),
+                       .tried = std::move(tried),
+                       .outcome = std::move(outcome),
+                       .alternatives = out_.alternatives};
+          if (!best || kept.time_s() < best->time_s()) best = std::move(kept);
+          if (!learnt) break;
+          continue;
+        }
       }
       const Violation& first = violations.front();
       out_.reason =
@@ -184,24 +207,46 @@ class Decider {
                       at_block(problem_, first.block));
       if (!model_.tighten(chosen->choice, violations)) break;
     }
-    return std::nullopt;
+    return best;
   }
 
-  /// The greatest share of its torque that a drive gives in a line that cuts, and where that is too much.
-  double check_motion(const JudgedRun& run, const std::vector<double>& gamma_offset_rad,
-                      std::vector<Violation>& violations) const {
-    if (!problem_.torque_shares) return 0.0;
-    const std::vector<double> shares = problem_.torque_shares(run.forces, run.blocks, gamma_offset_rad);
-    double greatest = 0.0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
+  /// The run on the robot: its time and the greatest share of its torque that a drive gives in a line that cuts; where
+  /// that is too much is a violation.
+  RobotRun on_robot(const JudgedRun& run, const std::vector<double>& gamma_offset_rad, Outcome& outcome,
+                    std::vector<Violation>& violations) const {
+    if (!problem_.robot_run) return {};
+    RobotRun out = problem_.robot_run(run.forces, run.blocks, gamma_offset_rad);
+    outcome.robot_time_s = out.time_s;
+    for (std::size_t i = 0; i < out.torque_shares.size(); ++i) {
       if (!model_.in_line(i)) continue;
-      greatest = std::max(greatest, shares[i]);
-      if (shares[i] > 1.0) {
+      const double share = out.torque_shares[i];
+      outcome.greatest_torque_share = std::max(outcome.greatest_torque_share, share);
+      if (share > 1.0) {
         violations.push_back(
-            {.limit = decision::ProgramLimit::joint_torque, .block = i, .value = shares[i], .allowed = 1.0});
+            {.limit = decision::ProgramLimit::joint_torque, .block = i, .value = share, .allowed = 1.0});
       }
     }
-    return greatest;
+    return out;
+  }
+
+  /// The program as it is in place of a choice that takes the robot longer, where it keeps every limit.
+  void prefer_program(Kept& found) {
+    const Outcome& programmed = out_.as_programmed;
+    if (!(programmed.robot_time_s < found.outcome.robot_time_s) || !programmed.violations.empty()) return;
+    std::optional<ProgramDecision> choice = choice_as_it_is(problem_, model_, progress_);
+    if (!choice) return;
+    Chosen out = {.choice = std::move(*choice), .standing = {}, .gamma_offset_rad = {}, .miss = {}};
+    out.standing.program = problem_.forces.program->program;
+    out.standing.stands = joints_at(problem_.forces, out.standing.program, {});
+    const std::vector<NearMiss> misses = near_misses(model_.checker(), *problem_.forces.cell, out.standing.stands);
+    if (!misses.empty() && model_.posture_free()) return;
+    if (!misses.empty()) out.miss = misses.front();
+    out_.notes.push_back(
+        fmt::format("Speeds and feeds stay as programmed: they take the robot {:.4g} s, the best choice {:.4g} s.",
+                    programmed.robot_time_s, found.outcome.robot_time_s));
+    found.chosen = std::move(out);
+    found.tried = {.forces = problem_.forces, .blocks = problem_.blocks};
+    found.outcome = programmed;
   }
 
   /// The best choice of those in which the robot can stand all along its way.
@@ -241,17 +286,21 @@ class Decider {
     for (const NearMiss& miss : misses) model_.forbid(chosen.choice, miss.block);
   }
 
-  void keep(Chosen& chosen, Tried tried) {
+  void keep(Kept& kept) {
+    Chosen& chosen = kept.chosen;
     if (chosen.miss) {
       out_.collision = near_miss_text(chosen.miss->clearance) + at_block(problem_, chosen.miss->block);
       out_.notes.push_back("The program as it is: " + out_.collision + ".");
     }
     out_.collisions_checked = model_.checker() != nullptr;
     out_.status = DecideResult::Status::found;
+    out_.reason.clear();
+    out_.decided = kept.outcome;
+    out_.alternatives = std::move(kept.alternatives);
     out_.gamma_offset_rad = chosen.gamma_offset_rad;
     out_.program = std::move(chosen.standing.program);
-    out_.forces = std::move(tried.forces);
-    out_.blocks = std::move(tried.blocks);
+    out_.forces = std::move(kept.tried.forces);
+    out_.blocks = std::move(kept.tried.blocks);
   }
 
   const DecideProblem& problem_;

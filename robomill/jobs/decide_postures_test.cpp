@@ -238,12 +238,12 @@ TEST_F(DecidePostures, AMotionThatTheDrivesCannotGiveIsFedSlower) {
   const DecideResult free = decide(asked);
   ASSERT_EQ(free.status, DecideResult::Status::found) << free.reason;
   const double most_m_per_s = 0.8 * free.stretches.front().lowest_feed_m_per_s;
-  asked.torque_shares = [&](const ForcesResult& run, const ProgramBlocks&, const std::vector<double>&) {
-    std::vector<double> out;
+  asked.robot_run = [&](const ForcesResult& run, const ProgramBlocks&, const std::vector<double>&) {
+    RobotRun out;
     for (std::size_t i = 0; i < run.program->program.blocks.size(); ++i) {
       const program::Block& block = run.program->program.blocks[i];
       const double way_m = (block.end.tip_m - run.program->program.begin_of(i).tip_m).norm();
-      out.push_back(block.duration_s > 0.0 ? way_m / block.duration_s / most_m_per_s : 0.0);
+      out.torque_shares.push_back(block.duration_s > 0.0 ? way_m / block.duration_s / most_m_per_s : 0.0);
     }
     return out;
   };

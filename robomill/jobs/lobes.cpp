@@ -1,8 +1,8 @@
 #include "robomill/jobs/lobes.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <filesystem>
+#include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/files/posture_json.hpp"
@@ -20,10 +20,8 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   require_modes_in_three_directions(cut);
   load_dynamics(cut, progress);
   cut.validate();
-  if (const auto plan = job_of_cut(job.lobes)) {
-    cut.notes.push_back(
-        fmt::format("{} plans this cut with the structure of its own measurement, not with [dynamics] of {}.",
-                    plan->filename().string(), job.lobes.filename().string()));
+  for (const std::filesystem::path& plan : jobs_of_cut(job.lobes)) {
+    if (const std::string text = other_structure_text(plan, cut); !text.empty()) cut.notes.push_back(text);
   }
   cut.options.points = job.points;
   if (cut.sweep != stability::SweptParameter::axial_depth) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,9 +79,10 @@ void require_cut_of(const monitor::MonitorFile& file, const LobesFile& lobes) {
 /// its own, or with process.modes.
 LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Progress& progress) {
   LobesFile cut = read_lobes(file.lobes);
-  constexpr std::uint64_t seed = 1;  // as of robomill plan
-  if (const auto job = job_of_cut(file.lobes)) {
-    const PlanResult structure = run_structure(*job, seed, progress);
+  const std::vector<std::filesystem::path> jobs = jobs_of_cut(file.lobes);
+  if (jobs.size() > 1) basis.notes.push_back(several_jobs_text(jobs, file.lobes));
+  if (jobs.size() == 1) {
+    const PlanResult structure = run_structure(jobs.front(), default_seed, progress);
     take_plan(cut, structure);
     basis.depth_margin = structure.job.recommend.depth_margin;
     basis.speed_window = structure.job.recommend.speed_window;
@@ -98,6 +99,7 @@ LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Pro
   cut.validate();
   require_cut_of(file, cut);
   add_assumed(basis.assumed, assumed_of(cut, CutUse::stability));
+  basis.notes.insert(basis.notes.end(), cut.notes.begin(), cut.notes.end());
   return cut;
 }
 

@@ -10,6 +10,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
+#include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/jobs/contradictions.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/plan_assumed.hpp"
@@ -255,7 +256,7 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
     } else if (cell.postures.empty()) {
       assume("those of the cell's arm alone; nothing was measured");
     }
-    return dynamics_of_cell(cell, result.warnings, result.notes, result.assumed, progress);
+    return dynamics_of_cell(cell, pushed_axes(*result.forces), result.warnings, result.notes, result.assumed, progress);
   }
   assume("the job's, the same in every posture, in the robot's base axes");
   return constant_dynamics(result.model);

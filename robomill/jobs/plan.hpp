@@ -85,6 +85,9 @@ struct PlanResult {
   [[nodiscard]] bool recommends() const { return !job.lobes.empty(); }
 };
 
+/// The seed of a plan where nobody gives one, and of what repeats a part of it.
+inline constexpr std::uint64_t default_seed = 1;
+
 /// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
 /// with test cuts.
 /// @param seed    of every random number

@@ -13,6 +13,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks/stand_at.hpp"
+#include "robomill/jobs/decide/block_times.hpp"
 #include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/jobs/files/scratch_program.hpp"
 #include "robomill/jobs/program_forces.hpp"
@@ -158,16 +159,18 @@ struct TurnedRun {
   const std::vector<double>& gamma_rad;
 };
 
-/// What the drives give while the robot runs a program, by the trajectory that it would be smoothed to.
-std::vector<double> torque_shares(const PlanResult& result, const CellFile& cell, const std::filesystem::path& folder,
-                                  const TurnedRun& run, Progress& progress) {
+/// What the robot makes of a program, by the trajectory that it would be smoothed to.
+RobotRun robot_run(const PlanResult& result, const CellFile& cell, const std::filesystem::path& folder,
+                   const TurnedRun& run, Progress& progress) {
   const program::Program& program = run.forces.program->program;
   const std::string name = "program" + result.job.program.extension().string();
   const program::ProgramReading reading = reading_of(result, cell);
   const program::Rewritten text =
       program::rewrite_program(result.job.program, reading, result.forces->program->program, program);
   const WrittenProgram written(folder, name, text.text, reading, program);
-  MotionLoads loads(cell, result.path->options.sample_period_s, written.block_of());
+  std::optional<MotionLoads> loads;
+  if (knows_torques(cell)) loads.emplace(cell, result.path->options.sample_period_s, written.block_of());
+  BlockTimes times(written.block_of());
   const SmoothJob job = {.program = written.path(),
                          .cell = cell.path,
                          .record = false,
@@ -175,9 +178,14 @@ std::vector<double> torque_shares(const PlanResult& result, const CellFile& cell
                          .program_name = name,
                          .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
                          .check_collisions = false,
-                         .observe = [&loads](std::span<const path::Sample> samples) { loads.add(samples); }};
-  static_cast<void>(run_smooth(job, cell, progress));
-  return loads.shares(run.forces, run.blocks.joint_loads);
+                         .observe = [&](std::span<const path::Sample> samples) {
+                           times.add(samples);
+                           if (loads) loads->add(samples);
+                         }};
+  const SmoothResult smoothed = run_smooth(job, cell, progress);
+  RobotRun out = {.time_s = smoothed.first().summary.duration_s, .block_time_s = times.times_s(), .torque_shares = {}};
+  if (loads) out.torque_shares = loads->shares(run.forces, run.blocks.joint_loads);
+  return out;
 }
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.
@@ -215,8 +223,7 @@ void take_one_speed(const CellFile& cell, DecideOptions& options, PlanResult& re
   }
   result.notes.push_back(
       fmt::format("decide.speed_changes allows several spindle speeds; a robot program carries out one, since "
-                  "spindle.output of {} only "
-                  "switches the spindle on.",
+                  "spindle.output of {} only switches the spindle on.",
                   cell.path.filename().string()));
 }
 
@@ -236,20 +243,17 @@ void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsA
   }
   if (result.path) {
     problem.max_tip_speed_m_per_s = result.path->options.max_velocity_m_per_s;
-    if (knows_torques(cell)) {
-      problem.torque_shares = [&](const ForcesResult& run, const ProgramBlocks& judged,
-                                  const std::vector<double>& gamma_offset_rad) {
-        return torque_shares(result, cell, folder, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad},
-                             progress);
-      };
-    }
+    problem.robot_run = [&](const ForcesResult& run, const ProgramBlocks& judged,
+                            const std::vector<double>& gamma_offset_rad) {
+      return robot_run(result, cell, folder, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad},
+                       progress);
+    };
   }
   result.decision = decide(problem, progress);
   if (result.decision->status != DecideResult::Status::found) {
     if (result.path) withdraw(*result.path);
     return;
   }
-  if (result.path) result.decision->as_programmed.robot_time_s = result.path->first().summary.duration_s;
   write_program(result, cell);
   if (result.path) {
     smooth_decided(result, cell, folder, progress);

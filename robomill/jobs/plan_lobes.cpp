@@ -174,8 +174,7 @@ void cover_spindle(PlanResult& result) {
   result.cut.options.grid[0] = nodes_for(result.cut.options.grid[0], asked[1] - asked[0], high - low);
   std::string text = fmt::format(
       "The chart of {} goes from {:.0f} to {:.0f} rpm, the spindle from {:.0f} to {:.0f} rpm: {:.0f} to {:.0f} rpm "
-      "were "
-      "searched.",
+      "were searched.",
       result.cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
       (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
   if (from < low) text += " Slower ones were not.";

@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
@@ -12,9 +14,17 @@
 
 namespace robomill::jobs {
 
-/// The job whose cut a lobes.toml is: the one document beside it whose job.lobes names it. None where none or several
-/// do, or where what the job's structure comes from is not there.
+/// The jobs whose cut a lobes.toml is, by name: the documents beside it whose job.lobes names it, as far as what their
+/// structures come from is there.
+[[nodiscard]] ROBOMILL_API std::vector<std::filesystem::path> jobs_of_cut(const std::filesystem::path& lobes);
+/// The one job whose cut it is; none where none or several are.
 [[nodiscard]] ROBOMILL_API std::optional<std::filesystem::path> job_of_cut(const std::filesystem::path& lobes);
+/// A sentence that the structure of none of several jobs was taken.
+[[nodiscard]] ROBOMILL_API std::string several_jobs_text(const std::vector<std::filesystem::path>& jobs,
+                                                         const std::filesystem::path& lobes);
+/// A sentence on how the structure by which a job plans the cut differs from that of its [dynamics]; empty where both
+/// are one file of modes.
+[[nodiscard]] ROBOMILL_API std::string other_structure_text(const std::filesystem::path& job, const LobesFile& cut);
 
 /// A cut as the plan of its job has it: its structure in place of what the file says, the range of the job's spindle in
 /// place of the chart's, and a note that says so.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
@@ -50,8 +51,19 @@ class Planned : public ::testing::Test {
     return read_advice_basis(file, Progress::none());
   }
 
+  static bool has(const std::vector<std::string>& notes, const std::string& text) {
+    return std::ranges::any_of(notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });
+  }
+
   test::Folder folder_;
 };
+
+// One file of modes in job and cut is one structure.
+TEST_F(Planned, TheSameModesAreNoOtherStructure) {
+  static_cast<void>(job(500.0, 0.5));
+  const auto lobes = folder_.file("lobes.toml", lobes_text("modes = \"modes.json\"\n"));
+  EXPECT_FALSE(has(run_lobes({.lobes = lobes}).cut.notes, "plans this cut"));
+}
 
 TEST_F(Planned, TheJobIsTheOneDocumentThatNamesTheCut) {
   const auto lobes = folder_.file("lobes.toml", lobes_text(stiff));
@@ -61,8 +73,11 @@ TEST_F(Planned, TheJobIsTheOneDocumentThatNamesTheCut) {
   EXPECT_FALSE(job_of_cut(lobes));
   const auto one = job(500.0, 0.5);
   EXPECT_EQ(job_of_cut(lobes), one);
+  EXPECT_TRUE(has(basis(lobes).notes, "The structure and the range of speeds are those of job.toml."));
   folder_.file("second.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n");
   EXPECT_FALSE(job_of_cut(lobes)) << "either may be meant";
+  EXPECT_TRUE(has(basis(lobes).notes,
+                  "job.toml and second.toml plan the cut of lobes.toml: the structure of none of them was taken"));
 }
 
 TEST_F(Planned, TakesStructureRangeAndMarginOfTheJob) {

@@ -190,8 +190,9 @@ std::vector<Assumption> assumed_damping(const CellFile& cell, const modal::Postu
        .file = cell.path.filename().string()}};
 }
 
-/// "xx by 4.1 %, yy by 5 %; zz, along which nobody hit, is likely off by 30 %": a sentence.
-std::string direct_text(const modal::PostureReport& report, const Eigen::Vector3d& deviation) {
+/// "xx by 4.1 %, yy by 5 %; zz, along which nobody hit, follows from the other columns": a sentence. How far that is
+/// off differs from posture to posture: unmeasured_axes_text says it.
+std::string direct_text(const modal::PostureReport& report) {
   std::string measured, others;
   for (std::size_t axis = 0; axis < report.direct.size(); ++axis) {
     const std::string name(2, "xyz"[axis]);
@@ -200,14 +201,13 @@ std::string direct_text(const modal::PostureReport& report, const Eigen::Vector3
       const double error = std::isfinite(direct.left_out_error) ? direct.left_out_error : direct.error;
       measured += fmt::format("{}{} by {}", measured.empty() ? "" : ", ", name, percent(error));
     } else {
-      others += fmt::format("; {}, along which nobody hit, is likely off by {}", name,
-                            percent(deviation(static_cast<Eigen::Index>(axis))));
+      others += fmt::format("; {}, along which nobody hit, follows from the other columns", name);
     }
   }
   return measured.empty() ? std::string() : fmt::format(" It misses {}{}.", measured, others);
 }
 
-std::string description(const modal::PostureReport& report, const Eigen::Vector3d& deviation) {
+std::string description(const modal::PostureReport& report) {
   std::string text = fmt::format(
       "The arm's model is calibrated over {} posture{}: compliant joints{}{}{}. It misses their "
       "receptances by {}",
@@ -220,7 +220,7 @@ std::string description(const modal::PostureReport& report, const Eigen::Vector3
   if (std::isfinite(report.left_out_error)) {
     text += fmt::format(", those of a posture left out by {}", percent(report.left_out_error));
   }
-  return text + "." + direct_text(report, deviation);
+  return text + "." + direct_text(report);
 }
 
 /// The mean over the measured postures.
@@ -256,7 +256,7 @@ CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
   }
   if (report.source == modal::PostureReport::Source::calibrated) {
     out.direct_deviation = mean_deviation(*out.model, postures);
-    out.notes.push_back(description(report, out.direct_deviation));
+    out.notes.push_back(description(report));
   }
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
   add_assumed(out.assumed, assumed_damping(cell, report));

@@ -190,6 +190,8 @@ TEST(Posture, AsksForHitsAlongAnAxisThatNobodyHit) {
   EXPECT_TRUE(warned(posture_warnings(without)));
   EXPECT_FALSE(warned(posture_warnings(without, {true, true, false})));
   EXPECT_FALSE(warned(posture_warnings(with)));
+  // One number for how far zz is off, that of the posture.
+  for (const std::string& note : without.notes) EXPECT_EQ(note.find("likely off"), std::string::npos) << note;
   const nlohmann::json some = nlohmann::json::parse(posture_modes_json(without))["posture"]["columns"];
   const nlohmann::json all = nlohmann::json::parse(posture_modes_json(with))["posture"]["columns"];
   EXPECT_EQ(some["z"]["measured"], false);

@@ -255,8 +255,7 @@ std::string speeds_note(const path::ProgramRun& run) {
   return fmt::format(
       "The NC program asks for {} spindle speeds, {} rpm; a robot program only switches the spindle on and carries out "
       "one. Give the program one speed (decide.speed_changes = \"none\" in the job of robomill plan), or split it "
-      "where "
-      "the speed changes.",
+      "where the speed changes.",
       run.spindle_speeds_rad_per_s.size(), speeds);
 }
 

@@ -230,11 +230,13 @@ void add_decision(std::string& out, const PlanResult& result) {
   add("as programmed", before);
   if (decision.decided) {
     add("as decided   ", *decision.decided);
-    if (std::isfinite(before.robot_time_s) && before.robot_time_s > 0.0) {
-      const double share = decision.decided->robot_time_s / before.robot_time_s - 1.0;
-      append(out, "             {:.0f} % {} of the robot's time\n", 100.0 * std::abs(share),
-             share < 0.0 ? "less" : "more");
-    }
+    const bool robot = std::isfinite(before.robot_time_s) && before.robot_time_s > 0.0;
+    const double share = (robot ? decision.decided->robot_time_s / before.robot_time_s
+                                : decision.decided->cutting_time_s / before.cutting_time_s) -
+                         1.0;
+    append(out, "             {:.0f} % {} of {}\n", 100.0 * std::abs(share), share <= 0.0 ? "less" : "more",
+           robot ? "the robot's time for the program"
+                 : "the cutting time at the feeds; what the robot takes is not known without [smoothing] in the cell");
     append(out, "             collisions {}\n", collisions_checked(result) ? "checked" : "not checked");
     append(out, "             {} changes of S, {} of F, {} lines of {} changed; {} cuts looked at, {} runs, {:.3g} s\n",
            decision.speeds_changed, decision.feeds_changed, result.program_out ? result.program_out->changed_lines : 0,

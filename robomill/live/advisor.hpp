@@ -1,10 +1,12 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/decision/recommend.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/monitor/advice.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
@@ -26,12 +28,14 @@ struct AdviceBasis {
   std::vector<bool> mode_coupling = {};
   /// Of each limit of the lobes the depth up to which forced vibration stays within the feed per tooth; empty: unknown.
   std::vector<double> vibration_depth_m = {};
-  double depth_margin = 0.2;   ///< in [0, 1): share of the limit that a suggested depth keeps off …
-  double speed_window = 0.02;  ///< … at every speed within this share of the suggested one
+  /// In [0, 1): share of the limit that a suggested depth keeps off …
+  double depth_margin = decision::default_depth_margin;
+  double speed_window = decision::default_speed_window;  ///< … at every speed within this share of the suggested one
   double lowest_rad_per_s = 0.0, highest_rad_per_s = 0.0;  ///< of the spindle, lowest < highest; 0: no bound
   /// Below it a mode is one of the arm, whose chatter no speed is suggested for; so is one below the lowest tooth
   /// passing that the spindle can give.
   double arm_below_hz = 100.0;
+  std::vector<std::string> notes = {};   ///< sentences for the user on what all this is from
   std::vector<Assumption> assumed = {};  ///< of the files that all this is from
   /// Of samples that no anti-alias filter is stated for: their lines may be folded. 0: a filter is stated.
   double unfiltered_sample_rate_hz = 0.0;

@@ -83,7 +83,6 @@ void DynamicsCache::load(jobs::LobesFile& file, Progress& progress) {
 }
 
 void DynamicsCache::load_plan(jobs::LobesFile& file, const fs::path& job, Progress& progress) {
-  constexpr std::uint64_t seed = 1;  // as of robomill plan
   auto known = std::ranges::find(planned_, job, &Planned::job);
   if (known != planned_.end() && stamps_of(known->watched) != known->stamps) {
     planned_.erase(known);
@@ -93,7 +92,7 @@ void DynamicsCache::load_plan(jobs::LobesFile& file, const fs::path& job, Progre
     Planned fresh{.job = job, .watched = files_named_in(job)};
     fresh.watched.push_back(job);
     fresh.stamps = stamps_of(fresh.watched);
-    fresh.structure = std::make_shared<const jobs::PlanResult>(jobs::run_structure(job, seed, progress));
+    fresh.structure = std::make_shared<const jobs::PlanResult>(jobs::run_structure(job, jobs::default_seed, progress));
     ++reads_;
     planned_.push_front(std::move(fresh));
     if (planned_.size() > most_) planned_.pop_back();

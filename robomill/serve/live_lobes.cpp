@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -169,8 +170,10 @@ std::string LiveLobes::answer(const LiveLobesRequest& request, Progress& progres
   cut = jobs::read_lobes(source);
   jobs::require_modes_in_three_directions(cut);
   // Seconds of a posture or a fit are not thrown away: the next request needs them too.
-  if (const auto job = jobs::job_of_cut(request.file)) {
-    dynamics_.load_plan(cut, *job, Progress::none());
+  const std::vector<std::filesystem::path> planned_by = jobs::jobs_of_cut(request.file);
+  if (planned_by.size() > 1) cut.notes.push_back(jobs::several_jobs_text(planned_by, request.file));
+  if (planned_by.size() == 1) {
+    dynamics_.load_plan(cut, planned_by.front(), Progress::none());
   } else {
     dynamics_.load(cut, Progress::none());
   }

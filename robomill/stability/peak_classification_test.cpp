@@ -58,7 +58,6 @@ TEST(PeakClassification, NamesTheDocumentedPeaks) {
   EXPECT_EQ(faster.mode.number, 0);
 }
 
-// The spindle runs 0.15 % slow under load: the 30th multiple is 5 Hz off, and still one.
 // A weak mode names no peak; the others keep their numbers.
 TEST(PeakClassification, WeakModesNameNothing) {
   modal::ModalModel modes = data::robot_modes();
@@ -74,6 +73,7 @@ TEST(PeakClassification, WeakModesNameNothing) {
   EXPECT_EQ(explain(peaks, modes).peaks[0].best.mode.number, 1);
 }
 
+// The spindle runs 0.15 % slow under load: the 30th multiple is 5 Hz off, and still one.
 TEST(PeakClassification, FindsTheTrueSpeedInThePeaks) {
   const double rotation_hz = 6500.0 / 60.0 * 0.9985;
   const PeakClassification found =

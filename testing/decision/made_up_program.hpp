@@ -70,6 +70,14 @@ class MadeUp : public ProgramModel {
     return out;
   }
 
+  /// What a machine makes of the cuts: some gain little by their feed.
+  void measure() {
+    for (ProgramCut& cut : cuts) {
+      cut.feed_part = std::max(0.0, random_.uniform(-0.5, 1.0));
+      cut.lost_s = (1.0 - cut.feed_part) * cut.length_m / cut.feed_m_per_s;
+    }
+  }
+
   std::vector<ProgramCut> cuts = {};
   std::vector<ProgramStretch> stretches = {};
   ProgramOptions options = {};
@@ -139,7 +147,7 @@ inline double time_of(const MadeUp& program, std::size_t cut, GridSpeed at, std:
   }
   const double feed = program.options.free_feed ? range.most_m_per_s : program.cuts[cut].feed_m_per_s;
   if (feed < range.least_m_per_s || feed > range.most_m_per_s) return none;
-  return program.cuts[cut].length_m / feed;
+  return program.cuts[cut].time_s(feed);
 }
 
 /// The same of cuts on end, γ as programmed.

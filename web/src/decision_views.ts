@@ -148,12 +148,17 @@ function changesText(changes: Decision['changes']): string {
   return said.join(', ');
 }
 
-const goals: Record<Decision['goal'], string> = { time: 'shortest cutting time at the feeds', removal_rate: 'highest removal rate' };
+function goalText({ goal, decided }: Decision): string {
+  if (goal === 'removal_rate') return 'highest removal rate';
+  if (goal !== 'time') return goal;
+  return (decided?.robot_time_s ?? null) === null ? 'shortest cutting time at the feeds' : 'shortest time of the robot';
+}
 const freedoms: Record<string, string> = { spindle_speed: 'spindle speed', feed: 'feed', gamma: 'γ', axial_depth: 'axial depth', lead: 'lead', tilt: 'tilt' };
 
-export function decisionFacts({ goal, free, changes, collisions_checked, evaluations, exact_runs, seconds }: Decision): Fact[] {
+export function decisionFacts(decision: Decision): Fact[] {
+  const { free, changes, collisions_checked, evaluations, exact_runs, seconds } = decision;
   const facts: Fact[] = [
-    { label: 'Goal', value: goals[goal] ?? goal },
+    { label: 'Goal', value: goalText(decision) },
     { label: 'Free to choose', value: free.map((name) => freedoms[name] ?? name).join(', ') || 'nothing' },
     { label: 'Collisions', value: collisions_checked ? 'checked' : 'not checked' },
   ];

@@ -151,13 +151,16 @@ std::string in_n_per_mm2(double value_n_per_m2) {
 }
 
 /// Which set was taken, and how far tests and sets lie apart.
-/// @param chosen  coefficients.set says which
-std::vector<std::string> notes_of(const Material& known, std::size_t index, const SetSpread& spread, bool chosen) {
+/// @param alike  sets that serve the cutter as well, where nobody chose one; 0: coefficients.set says which
+std::vector<std::string> notes_of(const Material& known, std::size_t index, const SetSpread& spread,
+                                  std::size_t alike) {
   const PublishedCoefficients& set = known.coefficients[index];
   std::string taken = fmt::format("The coefficients are those of {}, set {} of {}: {} [{}]", known.name, index + 1,
                                   known.coefficients.size(), set.cutter, set.source);
-  if (!chosen && known.coefficients.size() > 1) {
-    taken += ", of those that serve the cutter the one with the largest force; coefficients.set chooses another";
+  if (alike > 0 && known.coefficients.size() > 1) {
+    taken += alike > 1 ? fmt::format(", of the {} that serve the cutter the one with the largest force", alike)
+                       : std::string(", the one that serves the cutter best");
+    taken += "; coefficients.set chooses another";
   }
   std::vector<std::string> notes = {taken + "."};
   if (set.tangential_range_n_per_m2) {
@@ -191,7 +194,7 @@ CoefficientTable from_published(io::TomlFile& file, const std::string& key, cons
     out.std_ratio = tests ? set.tangential_std_n_per_m2 / set.line.tangential_n_per_m2.front() : spread.std_ratio;
     out.std_of = tests ? "the tests of its source" : "the sets of its material";
   }
-  out.notes = notes_of(known, index, spread, file.has("coefficients.set"));
+  out.notes = notes_of(known, index, spread, file.has("coefficients.set") ? 0 : sets_alike(known, cut.kind));
   if (set.kind && *set.kind != cut.kind) out.notes.emplace_back("Its tests had another kind of cutter than tool.kind.");
   out.published = set;
   return out;

@@ -115,6 +115,21 @@ TEST(CoefficientsToml, ANameAloneTakesAPublishedSet) {
   EXPECT_TRUE(whole_table_of(folder, "[coefficients]\ntangential_n_per_mm2 = 700\n").notes.empty());
 }
 
+// The note says by what the set was taken.
+TEST(CoefficientsToml, TheLargestForceChoosesAmongSetsThatServeAlike) {
+  for (const Material& known : materials()) {
+    if (known.coefficients.size() < 2) continue;
+    const std::size_t alike = sets_alike(known, CutterKind::flat_end);
+    EXPECT_GE(alike, 1U) << known.name;
+    EXPECT_LE(alike, known.coefficients.size()) << known.name;
+    if (!known.coefficients[*best_set(known, CutterKind::flat_end)].has_radial()) continue;
+    const test::Folder folder;
+    const CoefficientTable table = whole_table_of(folder, "coefficients = \"" + known.name + "\"\n");
+    const bool by_force = table.notes.front().find("with the largest force") != std::string::npos;
+    EXPECT_EQ(by_force, alike > 1) << table.notes.front();
+  }
+}
+
 TEST(CoefficientsToml, AMaterialIsScaled) {
   const test::Folder folder;
   const CoefficientTable as_it_is = whole_table_of(folder, "[coefficients]\nmaterial = \"7075-t6\"\n");

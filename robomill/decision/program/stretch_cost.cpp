@@ -43,7 +43,7 @@ StretchTime StretchCost::bound(const ProgramStretch& stretch, std::size_t candid
 
 StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candidate) const {
   StretchAt out;
-  out.time.time_s = 0.0;
+  bool holds = true;
   const double speed = speeds_[candidate].spindle_speed_rad_per_s;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     FeedRange range = model_.feeds(c, speed);
@@ -55,12 +55,13 @@ StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candi
       broken = broken_by(feed, range, c);
       range.least_m_per_s = range.most_m_per_s = feed;
     }
+    holds = holds && !broken;
     if (broken && broken->missed >= out.time.missed) out.time = *broken;
     out.least.push_back(std::min(range.least_m_per_s, range.most_m_per_s));  // apart by rounding at most, else stopped
     out.most.push_back(range.most_m_per_s);
     out.most_by.push_back(range.most_by);
-    out.time.time_s += cuts_[c].length_m / range.most_m_per_s;
   }
+  if (holds) sum_up(stretch, out);
   return out;
 }
 
@@ -76,20 +77,21 @@ StretchAt StretchCost::exact(const ProgramStretch& stretch, std::size_t candidat
   return out;
 }
 
-double StretchCost::feed_at(std::size_t cut, double feed_per_tooth_m, std::size_t candidate) const {
+double StretchCost::feed_of_a_tooth(std::size_t cut, std::size_t candidate) const {
   const double teeth_per_s = speeds_[candidate].spindle_speed_rad_per_s * options_.teeth / (2.0 * std::numbers::pi);
-  return feed_per_tooth_m * teeth_per_s / cuts_[cut].tooth_feed_share;
+  return teeth_per_s / cuts_[cut].tooth_feed_share;
 }
 
 StretchCost::Feeds StretchCost::narrowed(const Feeds& feeds, std::size_t cut, const CutLook& look,
                                          std::size_t candidate) const {
   Feeds out = feeds;
-  const double most = feed_at(cut, look.most_feed_per_tooth_m, candidate);
+  const double per_tooth = feed_of_a_tooth(cut, candidate);
+  const double most = look.most_feed_per_tooth_m * per_tooth;
   if (most < out.most_m_per_s) {
     out.most_m_per_s = most;
-    out.by = look.by;
+    out.by = out.empty() ? look.at(out.least_m_per_s / per_tooth) : look.by;
   }
-  const double least = feed_at(cut, look.least_feed_per_tooth_m, candidate);
+  const double least = look.least_feed_per_tooth_m * per_tooth;
   if (least > out.least_m_per_s) {
     out.least_m_per_s = least;
     if (!feeds.empty() && out.empty() && most >= feeds.least_m_per_s) out.by = look.least_by;
@@ -138,7 +140,7 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
   std::vector<double> times;
   times.reserve(stretch.end - stretch.begin);
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    times.push_back(cuts_[c].length_m / out.most[c - stretch.begin]);
+    times.push_back(cuts_[c].time_s(out.most[c - stretch.begin]));
   }
   GammaWay way(times, options_);
   const auto time_at = [&](std::size_t i, std::size_t gamma) {
@@ -150,7 +152,7 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
       feeds = narrowed(feeds, c, *look, candidate);
       if (!look->holds || feeds.empty()) return no_time;
     }
-    return std::max(times[i], cuts_[c].length_m / feeds.most_m_per_s);
+    return std::max(times[i], cuts_[c].time_s(feeds.most_m_per_s));
   };
   while (way.solve(time_at)) {
     std::vector<LookAt> unseen;
@@ -211,9 +213,11 @@ void StretchCost::stop_along_gamma(const ProgramStretch& stretch, std::size_t ca
 }
 
 void StretchCost::sum_up(const ProgramStretch& stretch, StretchAt& out) const {
-  out.time.time_s = 0.0;
+  out.time.time_s = out.time.feed_time_s = 0.0;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    out.time.time_s += cuts_[c].length_m / out.most[c - stretch.begin];
+    const double feed = out.most[c - stretch.begin];
+    out.time.time_s += cuts_[c].time_s(feed);
+    out.time.feed_time_s += cuts_[c].length_m / feed;
   }
 }
 

@@ -12,10 +12,11 @@ inline constexpr double no_time = std::numeric_limits<double>::infinity();
 
 /// Time of a stretch at a speed, or what stops it.
 struct StretchTime {
-  double time_s = no_time;   ///< infinite: a limit stops it
-  LimitUse stopped_by = {};  ///< … this one
-  double missed = 0.0;       ///< … by this share of it, > 0
-  std::size_t cut = 0;       ///< … here
+  double time_s = no_time;       ///< of ProgramCut::time_s; infinite: a limit stops it
+  LimitUse stopped_by = {};      ///< … this one
+  double missed = 0.0;           ///< … by this share of it, > 0
+  std::size_t cut = 0;           ///< … here
+  double feed_time_s = no_time;  ///< as time_s, at the feeds
 };
 
 /// One stretch at one speed.
@@ -45,8 +46,8 @@ class StretchCost {
   void along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
   /// What stops a stretch along which there is no way of γ.
   void stop_along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) const;
-  /// The feed of a cut at a feed per tooth of what cuts.
-  [[nodiscard]] double feed_at(std::size_t cut, double feed_per_tooth_m, std::size_t candidate) const;
+  /// The feed of a cut for each feed per tooth of what cuts [m/s per m].
+  [[nodiscard]] double feed_of_a_tooth(std::size_t cut, std::size_t candidate) const;
   /// Feeds of a cut: those that it has and a look allows.
   struct Feeds {
     double least_m_per_s = 0.0, most_m_per_s = 0.0;
@@ -59,6 +60,7 @@ class StretchCost {
                                      std::size_t candidate) const;
   void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
                   StretchAt& out) const;
+  /// The times of a stretch that nothing stops.
   void sum_up(const ProgramStretch& stretch, StretchAt& out) const;
 
   const std::vector<ProgramCut>& cuts_;

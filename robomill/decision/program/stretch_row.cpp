@@ -18,7 +18,7 @@ void StretchRow::add(const StretchCost& cost, std::size_t candidate) {
   Node node;
   for (std::size_t way = 0; way <= stretch_.others.size(); ++way) {
     const StretchTime bound = cost.bound(made(way), candidate);
-    node.ways.push_back({.at = {.time = bound}, .bound_s = bound.time_s, .exact = !std::isfinite(bound.time_s)});
+    node.ways.push_back({.at = {.time = bound}, .bound = bound, .exact = !std::isfinite(bound.time_s)});
   }
   node.best = *best_of(node, false);
   nodes_.push_back(std::move(node));
@@ -70,7 +70,7 @@ const StretchAt& StretchRow::best(std::size_t candidate) const {
 std::optional<StretchTime> StretchRow::seen(std::size_t candidate) const {
   const Node& node = nodes_[candidate];
   const bool looked =
-      std::ranges::any_of(node.ways, [](const Way& way) { return way.exact && std::isfinite(way.bound_s); });
+      std::ranges::any_of(node.ways, [](const Way& way) { return way.exact && std::isfinite(way.bound.time_s); });
   const bool open = std::ranges::any_of(node.ways, [](const Way& way) { return !way.exact; });
   if (open && !looked) return std::nullopt;
   const std::optional<std::size_t> way = best_of(node, true);
@@ -78,9 +78,11 @@ std::optional<StretchTime> StretchRow::seen(std::size_t candidate) const {
   return node.ways[*way].at.time;
 }
 
-double StretchRow::bound_s(std::size_t candidate) const {
-  double least = no_time;
-  for (const Way& way : nodes_[candidate].ways) least = std::min(least, way.bound_s);
+StretchTime StretchRow::bound(std::size_t candidate) const {
+  StretchTime least;
+  for (const Way& way : nodes_[candidate].ways) {
+    if (way.bound.time_s < least.time_s) least = way.bound;
+  }
   return least;
 }
 

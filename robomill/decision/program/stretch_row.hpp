@@ -31,7 +31,7 @@ class StretchRow {
   /// been looked at and some way may hold.
   [[nodiscard]] std::optional<StretchTime> seen(std::size_t candidate) const;
   /// What the candidate takes at least, by what needs no dynamics.
-  [[nodiscard]] double bound_s(std::size_t candidate) const;
+  [[nodiscard]] StretchTime bound(std::size_t candidate) const;
   /// The stretch made so.
   [[nodiscard]] ProgramStretch made(std::size_t way) const;
 
@@ -39,7 +39,7 @@ class StretchRow {
   /// A way of the stretch at a candidate.
   struct Way {
     StretchAt at = {};
-    double bound_s = no_time;
+    StretchTime bound = {};  ///< by what needs no dynamics
     bool exact = false;
   };
   struct Node {

@@ -1,10 +1,13 @@
 #include "robomill/jobs/blocks/dynamics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks.hpp"
+#include "robomill/jobs/decide/units.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/robot/dynamics.hpp"
@@ -28,6 +31,24 @@ bool vibrates(const robot::Arm& arm) {
          std::ranges::all_of(arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
 }
 
+std::array<bool, 3> pushed_axes(const ForcesResult& forces) {
+  std::array<bool, 3> out = {true, true, true};
+  if (forces.file.cutter.kind != cutting::CutterKind::flat_end) return out;
+  const program::Program& program = forces.program->program;
+  const Eigen::Matrix3d base_from_work = forces.cell->cell.workpiece.linear();
+  const double upright = std::cos(5.0 * units::deg);
+  out = {false, false, false};
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    if (!forces.program->blocks[i].force.cuts()) continue;
+    const Eigen::Vector3d axis = base_from_work * program.blocks[i].end.axis;
+    const bool plunges = plunges_in_line(program, i);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      out.at(k) = out.at(k) || plunges || std::abs(axis(static_cast<Eigen::Index>(k))) < upright;
+    }
+  }
+  return out;
+}
+
 modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints) {
   const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
   modal::ModalModel model;
@@ -44,8 +65,8 @@ modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& join
   return model;
 }
 
-DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings, std::vector<std::string>& notes,
-                            std::vector<Assumption>& assumed, Progress& progress) {
+DynamicsAt dynamics_of_cell(const CellFile& cell, const std::array<bool, 3>& pushed, std::vector<std::string>& warnings,
+                            std::vector<std::string>& notes, std::vector<Assumption>& assumed, Progress& progress) {
   if (cell.postures.empty() && !vibrates(cell.cell.arm)) {
     throw InvalidInput(cell.path.string(), "does not say what vibrates",
                        "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
@@ -53,7 +74,7 @@ DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warn
   }
   const CellDynamics dynamics = cell_dynamics(cell, progress);
   warnings.insert(warnings.end(), dynamics.warnings.begin(), dynamics.warnings.end());
-  const std::string unmeasured = unmeasured_axes_text(dynamics.model->report(), dynamics.direct_deviation);
+  const std::string unmeasured = unmeasured_axes_text(dynamics.model->report(), dynamics.direct_deviation, pushed);
   if (!unmeasured.empty()) warnings.push_back(unmeasured);
   notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
   add_assumed(assumed, dynamics.assumed);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "robomill/base/printable.hpp"
@@ -72,6 +73,16 @@ std::string joints_text(const CellCheck& check, const robot::Position6& position
   return out;
 }
 
+/// "180.00° (half its range, at most 180°)": what a joint's way to its nearer limit is a share of, as path::limit_share
+/// has it.
+std::string half_range_text(const CellCheck& check, int joint) {
+  const JointUnit unit = joint_unit(check.prismatic, joint);
+  const robot::JointLimits& limits = check.limits;
+  const double half = std::min(0.5 * limits.max_position(joint) - 0.5 * limits.min_position(joint), std::numbers::pi);
+  return fmt::format("{:.2f}{} (half its range{})", half / unit.size, unit.text,
+                     check.prismatic.at(static_cast<std::size_t>(joint)) ? "" : ", at most 180°");
+}
+
 /// How far a stand is from what it cannot do.
 std::string distances_text(const CellCheck& check, const CellStand& stand) {
   std::string out;
@@ -82,8 +93,9 @@ std::string distances_text(const CellCheck& check, const CellStand& stand) {
   }
   if (out.empty() && stand.nearest_joint >= 0) {
     const JointUnit unit = joint_unit(check.prismatic, stand.nearest_joint);
-    out = fmt::format("joint {} is nearest to its limit, {:.2f}{}; ", stand.nearest_joint + 1,
-                      stand.to_limit(stand.nearest_joint) / unit.size, unit.text);
+    out = fmt::format("joint {} is nearest to its limit, {:.2f}{} of {}; ", stand.nearest_joint + 1,
+                      stand.to_limit(stand.nearest_joint) / unit.size, unit.text,
+                      half_range_text(check, stand.nearest_joint));
   }
   return out + fmt::format("condition number {:.3g}", stand.condition_number);
 }
@@ -137,13 +149,19 @@ std::string gamma_text(const CellCheck& check, const path::PostureChoice& choice
   return fmt::format(" with γ from {}° to {}°", decimal(low, units::deg, 1, true), decimal(high, units::deg, 1, true));
 }
 
-/// "margin 0.28, of joint 6: …": what the number is a share of.
-std::string margin_text(const path::Margin& margin) {
+/// "margin 0.278, of joint 6: 50.00° to its limit of 350°, of 180.00° (half its range, at most 180°)"
+std::string margin_text(const CellCheck& check, const path::Margin& margin) {
   if (margin.joint < 0) {
-    return fmt::format("margin {:.3g}, to a singularity: 1 / condition number of the Jacobian", margin.least);
+    return fmt::format("margin {:.3g}, to a singularity: 1 / {:.3g}, the condition number of the Jacobian there",
+                       margin.least, 1.0 / margin.least);
   }
-  return fmt::format("margin {:.3g}, of joint {}: its way to the nearest limit over half its range, over 180° at most",
-                     margin.least, margin.joint + 1);
+  const JointUnit unit = joint_unit(check.prismatic, margin.joint);
+  const double low = check.limits.min_position(margin.joint), high = check.limits.max_position(margin.joint);
+  const double at = margin.position(margin.joint);
+  const double limit = at - low < high - at ? low : high;
+  return fmt::format("margin {:.3g}, of joint {}: {:.2f}{} to its limit of {:.6g}{}, of {}", margin.least,
+                     margin.joint + 1, std::abs(limit - at) / unit.size, unit.text, limit / unit.size, unit.text,
+                     half_range_text(check, margin.joint));
 }
 
 void add_placement(std::string& out, const CellCheck& check) {
@@ -151,7 +169,7 @@ void add_placement(std::string& out, const CellCheck& check) {
   const std::string what = check.program.empty() ? "the workpiece's origin" : printable(check.program);
   if (placement.works()) {
     append(out, "\nplacement  {} is reached{}; least {}\n", what, gamma_text(check, placement.choice),
-           margin_text(placement.choice.margin));
+           margin_text(check, placement.choice.margin));
     append(out, "posture    {}\n", posture_text(placement.choice, check.joints, check.prismatic));
     return;
   }
@@ -185,7 +203,7 @@ void add_proposals(std::string& out, const CellCheck& check) {
            vector_text(proposal.placement.workpiece.translation(), units::mm, 3),
            vector_text(Eigen::Vector3d(turn.c_rad, turn.b_rad, turn.a_rad), units::deg, 4));
     append(out, "  reached{}; least {}\n", gamma_text(check, proposal.placement.choice),
-           margin_text(proposal.placement.choice.margin));
+           margin_text(check, proposal.placement.choice.margin));
   }
 }
 

@@ -21,6 +21,8 @@ using decision::ProgramLimit;
 constexpr double default_speed_range = 0.4;
 /// What a block that broke a limit must keep from it beyond what it missed.
 constexpr double tightening = 0.01;
+/// Feeds that differ by less say nothing of what a line gains by its feed.
+constexpr double other_feed = 0.1;
 /// Of the force of a block whose load turns round.
 constexpr double reversal_step = 0.3;
 
@@ -186,6 +188,47 @@ std::vector<double> BlockModel::chosen_gamma(const program::Program& program, co
     gamma.push_back({.begin_rad = choice.gamma_begin_rad[cut], .end_rad = choice.gamma_end_rad[cut]});
   }
   return gamma_offsets(program, units(), gamma);
+}
+
+std::vector<double> BlockModel::line_times(const RobotRun& run) const {
+  std::vector<double> out(lines(), 0.0);
+  for (std::size_t i = 0; i < std::min(line_of_.size(), run.block_time_s.size()); ++i) {
+    if (line_of_[i] != no_line) out[line_of_[i]] += run.block_time_s[i];
+  }
+  return out;
+}
+
+void BlockModel::learn_programmed(const RobotRun& run) {
+  programmed_s_ = line_times(run);
+}
+
+bool BlockModel::learn_times(const RobotRun& run, const ProgramDecision& choice) {
+  bool known = false;
+  const std::vector<double> times = line_times(run);
+  for (std::size_t line = 0; line < lines(); ++line) {
+    if (!(times[line] > 0.0) || !(programmed_s_[line] > 0.0) || units().lines[line].turns_only) continue;
+    known = true;
+    const double length_m = cuts_[line].length_m;
+    const double at_feed_s = length_m / choice.feed_m_per_s[chosen_cut(choice, line)];
+    const double saved_s = length_m / cuts_[line].feed_m_per_s - at_feed_s;
+    const bool differs = std::abs(saved_s) > other_feed * at_feed_s;
+    const double part = differs ? std::clamp((programmed_s_[line] - times[line]) / saved_s, 0.0, 1.0) : 1.0;
+    for (std::size_t way = 0; way < ways_.size(); ++way) {
+      decision::ProgramCut& cut = cuts_[way * lines() + line];
+      cut.feed_part = part;
+      cut.lost_s = std::max(times[line] - part * at_feed_s, 0.0);
+    }
+  }
+  return known;
+}
+
+double BlockModel::time_s(const ProgramDecision& choice) const {
+  double out = choice.ramp_time_s;
+  for (std::size_t line = 0; line < lines(); ++line) {
+    const std::size_t cut = chosen_cut(choice, line);
+    out += cuts_[cut].time_s(choice.feed_m_per_s[cut]);
+  }
+  return out;
 }
 
 bool BlockModel::tighten(const ProgramDecision& choice, const std::vector<Violation>& violations) {

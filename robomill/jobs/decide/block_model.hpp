@@ -57,6 +57,12 @@ class BlockModel final : public decision::ProgramModel {
   /// The way of a block that cuts.
   [[nodiscard]] const WayModel& way_at(const decision::ProgramDecision& choice, std::size_t block) const;
 
+  /// Keeps what the lines take as programmed.
+  void learn_programmed(const RobotRun& run);
+  /// What a line gains by its feed: what it takes as programmed and in a choice that was run. false: not known.
+  bool learn_times(const RobotRun& run, const decision::ProgramDecision& choice);
+  /// What a choice takes, by what is known of the lines.
+  [[nodiscard]] double time_s(const decision::ProgramDecision& choice) const;
   /// Holds what broke a limit further from it, by its worst block; false: that is not possible.
   bool tighten(const decision::ProgramDecision& choice, const std::vector<Violation>& violations);
   /// Whether γ or the lean may differ from the program's.
@@ -81,6 +87,8 @@ class BlockModel final : public decision::ProgramModel {
   [[nodiscard]] std::size_t way_of(const decision::ProgramDecision& choice, std::size_t line) const;
   /// The cut of a line in a choice.
   [[nodiscard]] std::size_t chosen_cut(const decision::ProgramDecision& choice, std::size_t line) const;
+  /// What the robot takes for each line; 0: not known.
+  [[nodiscard]] std::vector<double> line_times(const RobotRun& run) const;
   [[nodiscard]] bool forbid_at(const decision::ProgramDecision& choice, std::size_t line);
 
   const DecideProblem& problem_;
@@ -94,6 +102,7 @@ class BlockModel final : public decision::ProgramModel {
   std::vector<std::vector<std::size_t>> other_ways_ = {};  ///< of each stretch: the way of each of its `others`
   std::vector<Look> looks_ = {};
   std::vector<std::size_t> line_of_ = {};  ///< of each block; no_line: none cuts in it
+  std::vector<double> programmed_s_ = {};  ///< what the robot takes for each line as programmed; 0: not known
   decision::ProgramOptions search_ = {};
   std::vector<std::string> notes_ = {};
 };

@@ -89,6 +89,14 @@ double most_feed_per_tooth_m(const BlockLoad& load, const LoadSamples& samples, 
   return feed[2];
 }
 
+double load_at(const BlockLoad& load, const LoadSamples& samples, double feed_per_tooth_m) {
+  const std::array<double, 3>& feed = load.feed_per_tooth_m;
+  const std::size_t k = feed_per_tooth_m < feed[1] ? 0 : 1;
+  const double span = feed.at(k + 1) - feed.at(k);
+  if (!(span > 0.0)) return samples.at(k);
+  return std::lerp(samples.at(k), samples.at(k + 1), (feed_per_tooth_m - feed.at(k)) / span);
+}
+
 std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const std::vector<LineUnit>& lines) {
   std::array<double, 2> out = {std::numeric_limits<double>::infinity(), 0.0};
   for (const LineUnit& line : lines) {

@@ -25,6 +25,9 @@ struct BlockLoad {
 /// Greatest feed per tooth at which a load stays at most `allowed`, within the samples; 0: at none.
 [[nodiscard]] double most_feed_per_tooth_m(const BlockLoad& load, const LoadSamples& samples, double allowed);
 
+/// A load at a feed per tooth: the chords, and the first and last of them beyond the samples.
+[[nodiscard]] double load_at(const BlockLoad& load, const LoadSamples& samples, double feed_per_tooth_m);
+
 /// Chip thickness of each block as programmed, least and most of all that cut.
 [[nodiscard]] std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const std::vector<LineUnit>& lines);
 

@@ -128,7 +128,9 @@ void WayModel::limit_by_block(std::size_t line, std::size_t block, double speed,
   const BlockPace& pace = pace_[block];
   const double per_tooth = teeth_per_s(speed) / units_.cuts[line].tooth_feed_share;
   const double programmed_chip_m = units_.cuts[line].feed_m_per_s / per_tooth * load.chip_share;
-  cap(range, pace.joint.feed_m_per_s, {ProgramLimit::joint_speed, pace.joint.allowed, pace.joint.allowed});
+  cap(range, pace.joint.feed_m_per_s,
+      {ProgramLimit::joint_speed, pace.joint.allowed * units_.cuts[line].feed_m_per_s / pace.joint.feed_m_per_s,
+       pace.joint.allowed});
   const double least = chip_factor_[line] * load.feed_per_tooth_m[0] * per_tooth;
   if (least > range.least_m_per_s) {
     range.least_m_per_s = least;
@@ -157,6 +159,28 @@ void WayModel::limit_by_block(std::size_t line, std::size_t block, double speed,
   if (slowest > 0.0 && cutting_speed < slowest) {
     cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, slowest});
   }
+}
+
+LimitUse WayModel::at_feed(std::size_t line, LimitUse use, double feed_m_per_s, double speed) const {
+  const double feed_per_tooth_m = feed_m_per_s * units_.cuts[line].tooth_feed_share / teeth_per_s(speed);
+  double greatest = 0.0;
+  for (const std::size_t block : units_.lines[line].cutting) {
+    const BlockLoad& load = loads_[block];
+    if (!(load.chip_share > 0.0)) continue;
+    double value = 0.0;
+    if (use.limit == ProgramLimit::force) {
+      value = load_at(load, load.force_n, feed_per_tooth_m);
+    } else if (use.limit == ProgramLimit::deflection) {
+      value = load_at(load, load.deflection_m, feed_per_tooth_m);
+    } else if (use.limit == ProgramLimit::torque || use.limit == ProgramLimit::power) {
+      value = load_at(load, load.torque_n_m, feed_per_tooth_m) * (use.limit == ProgramLimit::power ? speed : 1.0);
+    } else {
+      return use;
+    }
+    greatest = std::max(greatest, value);
+  }
+  use.value = greatest;
+  return use;
 }
 
 FeedRange WayModel::feeds(std::size_t line, double speed) const {
@@ -189,6 +213,8 @@ FeedRange WayModel::feeds(std::size_t line, double speed) const {
   for (const std::size_t block : unit.cutting) limit_by_block(line, block, speed, range);
   // A plunge is not held up by the chip that it would need to be fed faster for.
   if (unit.plunges) range.least_m_per_s = std::min(range.least_m_per_s, units_.cuts[line].feed_m_per_s);
+  const bool empty = range.least_m_per_s > range.most_m_per_s;
+  range.most_by = at_feed(line, range.most_by, empty ? range.least_m_per_s : units_.cuts[line].feed_m_per_s, speed);
   if (!std::isfinite(range.most_m_per_s)) range.least_m_per_s = range.most_m_per_s = units_.cuts[line].feed_m_per_s;
   return range;
 }
@@ -321,7 +347,7 @@ decision::CutLook WayModel::look(std::size_t look_class, double speed, double ga
   // No look finds more than the depths that it searches can show.
   const double asked =
       std::min(setting_.problem->machine.depth_margin + more_margin_[look_class], 1.0 - 1.01 / deepest());
-  const LimitUse margin = {ProgramLimit::stability, found.margin, asked};
+  const LimitUse margin = {ProgramLimit::stability, found.stable ? found.margin : std::min(found.margin, 0.0), asked};
   out.holds = found.stable && found.margin >= asked;
   if (!out.holds || out.by.limit == ProgramLimit::none) out.by = margin;
   out.holds = out.holds && keep_surface(look_class, found, out);
@@ -343,6 +369,8 @@ bool WayModel::keep_surface(std::size_t look_class, const ClassLook& found, deci
   if (most_m >= out.most_feed_per_tooth_m) return true;
   out.most_feed_per_tooth_m = most_m;
   out.by = use;
+  out.by_feed_per_tooth_m = feed[0];
+  out.by_rise_per_m = (found.surface_m[1] - found.surface_m[0]) / (feed[2] - feed[0]);
   return true;
 }
 

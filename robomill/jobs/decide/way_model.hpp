@@ -99,6 +99,9 @@ class WayModel {
 
   /// Narrows the feeds of a line by what one of its blocks bears.
   void limit_by_block(std::size_t line, std::size_t block, double speed, decision::FeedRange& range) const;
+  /// A load limit with the greatest value of a line's blocks at a feed; other limits as they are.
+  [[nodiscard]] decision::LimitUse at_feed(std::size_t line, decision::LimitUse use, double feed_m_per_s,
+                                           double speed) const;
   void sort_into_classes();
   [[nodiscard]] const Stand& stand(std::size_t look_class, double gamma_rad) const;
   /// 1 - depth / limit, of the 5 % quantile, and of the depth searched where there is no limit.

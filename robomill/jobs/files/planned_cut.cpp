@@ -44,17 +44,43 @@ bool plans(const fs::path& document, const fs::path& lobes) {
 
 }  // namespace
 
-std::optional<fs::path> job_of_cut(const fs::path& lobes) {
+std::vector<fs::path> jobs_of_cut(const fs::path& lobes) {
   const fs::path folder = lobes.parent_path().empty() ? fs::path(".") : lobes.parent_path();
-  std::optional<fs::path> found;
+  std::vector<fs::path> out;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path path = lobes.parent_path() / entry->path().filename();
-    if (io::format_of(path) != io::Format::toml || !plans(path, lobes)) continue;
-    if (found) return std::nullopt;
-    found = path;
+    if (io::format_of(path) == io::Format::toml && plans(path, lobes)) out.push_back(path);
   }
-  return found;
+  std::ranges::sort(out);
+  return out;
+}
+
+std::optional<fs::path> job_of_cut(const fs::path& lobes) {
+  const std::vector<fs::path> jobs = jobs_of_cut(lobes);
+  return jobs.size() == 1 ? std::optional(jobs.front()) : std::nullopt;
+}
+
+std::string several_jobs_text(const std::vector<fs::path>& jobs, const fs::path& lobes) {
+  std::string names;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (i > 0) names += i + 1 == jobs.size() ? " and " : ", ";
+    names += jobs[i].filename().string();
+  }
+  return fmt::format("{} plan the cut of {}: the structure of none of them was taken, nor their range of speeds.",
+                     names, lobes.filename().string());
+}
+
+std::string other_structure_text(const fs::path& job, const LobesFile& cut) {
+  const Job plan = read_job(io::TomlSource(job, io::read_file(job, largest_job_bytes)));
+  std::error_code error;
+  const bool same =
+      !plan.modes.empty() && !cut.modes.empty() &&
+      (plan.modes.lexically_normal() == cut.modes.lexically_normal() || fs::equivalent(plan.modes, cut.modes, error));
+  if (same) return {};
+  return fmt::format("{} plans this cut with the structure {}, not with [dynamics] of {}.", job.filename().string(),
+                     plan.assembly.empty() ? "of its own measurement" : "that its assembly predicts",
+                     cut.path.filename().string());
 }
 
 void take_plan(LobesFile& cut, const PlanResult& structure) {
