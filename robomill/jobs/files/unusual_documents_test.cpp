@@ -49,18 +49,19 @@ const fs::path source = ROBOMILL_SOURCE_DIR;
 /// A TOML document and what its reader has to say of it.
 struct Kind {
   const char* name;
-  fs::path example = {};         ///< of the source, …
-  const char* text = nullptr;    ///< … or a text
-  std::size_t least_keys = 1;    ///< of the document that leave their range
+  fs::path example = {};       ///< of the source, …
+  const char* text = nullptr;  ///< … or a text
+  std::size_t least_keys = 1;  ///< of the document that leave their range
   std::function<Notes(const io::TomlSource&)> read = {};
 };
 
 std::vector<Kind> kinds() {
   return {
       {.name = "job.toml",
-       .text = "[job]\nlobes = \"lobes.toml\"\nmodes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 3000\nmax_speed_rpm = "
-               "18000\n[tool]\nmax_axial_depth_mm = 5\n[[cuts]]\nspindle_speed_rpm = 9000\naxial_depth_mm = 1\n"
-               "result = \"stable\"\n",
+       .text =
+           "[job]\nlobes = \"lobes.toml\"\nmodes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 3000\nmax_speed_rpm = "
+           "18000\n[tool]\nmax_axial_depth_mm = 5\n[[cuts]]\nspindle_speed_rpm = 9000\naxial_depth_mm = 1\n"
+           "result = \"stable\"\n",
        .least_keys = 3,
        .read = [](const io::TomlSource& s) { return read_job(s).notes; }},
       {.name = "hits.toml",
@@ -70,8 +71,9 @@ std::vector<Kind> kinds() {
        .least_keys = 3,
        .read = [](const io::TomlSource& s) { return modal::read_hits(s).notes; }},
       {.name = "hits.toml of a tap test",
-       .text = "[acquisition]\nresponse = \"acceleration\"\nsample_rate_hz = 51200\nforce_mv_per_n = 2.2\n"
-               "response_mv_per_g = 1000\n[[hits]]\nforce = \"f\"\nforce_direction = \"x\"\nresponses = { x = \"a\" }\n",
+       .text =
+           "[acquisition]\nresponse = \"acceleration\"\nsample_rate_hz = 51200\nforce_mv_per_n = 2.2\n"
+           "response_mv_per_g = 1000\n[[hits]]\nforce = \"f\"\nforce_direction = \"x\"\nresponses = { x = \"a\" }\n",
        .least_keys = 2,
        .read = [](const io::TomlSource& s) { return modal::read_hit_rows(s).notes; }},
       {.name = "lobes.toml",
@@ -184,7 +186,8 @@ TEST(UnusualDocuments, AreWarnedOfByEveryReader) {
       const std::vector<double> wrong = thousandfold(line.text.substr(line.text.find('=') + 1));
       if (wrong.empty() || !io::unusual_value(line.key, wrong)) continue;
       ++keys;
-      const std::string value = wrong.size() == 1 ? fmt::format("{}", wrong[0]) : fmt::format("[{}]", fmt::join(wrong, ", "));
+      const std::string value =
+          wrong.size() == 1 ? fmt::format("{}", wrong[0]) : fmt::format("[{}]", fmt::join(wrong, ", "));
       try {
         const std::string said = joined(kind.read(io::TomlSource(path, text, {{line.key, value}})));
         EXPECT_NE(said.find(line.key.substr(line.key.rfind('.') + 1)), std::string::npos)
@@ -200,10 +203,10 @@ TEST(UnusualDocuments, AreWarnedOfByEveryReader) {
 TEST(UnusualDocuments, AreWarnedOfInJson) {
   test::Folder folder;
   Notes notes;
-  static_cast<void>(modal::read_modes(
-      folder.file("modes.json", R"({"modes": [{"frequency_hz": 720000, "damping_ratio": 0.03,
+  static_cast<void>(
+      modal::read_modes(folder.file("modes.json", R"({"modes": [{"frequency_hz": 720000, "damping_ratio": 0.03,
         "left": {"x": [1, 0]}, "right": {"x": [1, 0]}, "std": {"frequency_hz": 0.1, "damping_ratio": 1e-5}}]})"),
-      notes));
+                        notes));
   ASSERT_EQ(notes.size(), 1U) << joined(notes);
   EXPECT_NE(notes[0].find("modes.json: modes[1].frequency_hz = 720000 Hz; is unusual"), std::string::npos) << notes[0];
 
@@ -221,8 +224,8 @@ TEST(UnusualDocuments, AreWarnedOfInJson) {
 
 TEST(UnusualDocuments, AreWarnedOfInTables) {
   test::Folder folder;
-  const cutting::SlotsFile slots = cutting::read_slots(folder.file(
-      "slots.csv", "feed_per_tooth_mm,axial_depth_mm,fx_n,fy_n,fz_n\n0.1,2,100,90,20\n100,2,200,150,30\n"));
+  const cutting::SlotsFile slots = cutting::read_slots(
+      folder.file("slots.csv", "feed_per_tooth_mm,axial_depth_mm,fx_n,fy_n,fz_n\n0.1,2,100,90,20\n100,2,200,150,30\n"));
   EXPECT_NE(joined(slots.notes).find("slots.csv:3: feed_per_tooth_mm = 100 mm; is unusual"), std::string::npos)
       << joined(slots.notes);
 
@@ -234,8 +237,8 @@ TEST(UnusualDocuments, AreWarnedOfInTables) {
 
   const robot::Arm arm = read_cell(source / "data/cells/kuka-kr210-r2700.toml", Robots::any).cell.arm;
   const std::string head = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n";
-  const robot::LoadsFile loads = robot::read_loads(
-      folder.file("loads.csv", head + "0.312,-0.871,1.934,0.208,0.777,0.05,300,0,0,150,0,0\n"), arm);
+  const robot::LoadsFile loads =
+      robot::read_loads(folder.file("loads.csv", head + "0.312,-0.871,1.934,0.208,0.777,0.05,300,0,0,150,0,0\n"), arm);
   EXPECT_NE(joined(loads.notes).find("joints_deg"), std::string::npos) << joined(loads.notes);
   EXPECT_NE(joined(loads.notes).find("dx_mm = 150 mm; is unusual"), std::string::npos) << joined(loads.notes);
 
