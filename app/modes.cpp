@@ -16,9 +16,9 @@
 namespace robomill::app {
 namespace {
 
-modal::FitOptions options_of(const ModesCommand& command, const Common& common) {
+modal::FitOptions options_of(const ModesCommand& command, const Common& common, std::vector<std::string>& notes) {
   modal::FitOptions options;
-  if (!command.config.empty()) options = modal::read_fit_options(command.config);
+  if (!command.config.empty()) options = modal::read_fit_options(command.config, notes);
   options.seed = common.seed;
   if (command.method) options.method = value_in(modal::fit_method_names, *command.method).value();
   if (!command.band_hz.empty()) {
@@ -63,11 +63,9 @@ Exit run(const ModesCommand& command, const Common& common, Progress& progress) 
     fmt::print(stderr, "robomill: modes needs FRF files, or --cell with --joints\n");
     return wrong_usage;
   }
-  const jobs::ModesResult result = jobs::run_modes({.frfs = command.inputs,
-                                                    .as = command.as,
-                                                    .options = options_of(command, common),
-                                                    .accept_fit = command.accept_fit},
-                                                   progress);
+  jobs::ModesJob job{.frfs = command.inputs, .as = command.as, .accept_fit = command.accept_fit};
+  job.options = options_of(command, common, job.notes);
+  const jobs::ModesResult result = jobs::run_modes(job, progress);
   write_result(common, result);
   show(common, jobs::summary(result), [&] { return jobs::page_of(result); });
   std::string missing = jobs::shortfall(result);

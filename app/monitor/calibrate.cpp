@@ -58,11 +58,15 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
   if (!common.report.empty()) {
     page::Report page;
     page.title = "Calibration of the chatter monitor";
+    page.notes = result.monitor.notes;
     page.summary = summary_of(result.calibration);
     page.calibration = json;
     write_report(common.report, page, json);
   }
-  if (common.wants_summary()) fmt::print("{}", summary_of(result.calibration));
+  if (common.wants_summary()) {
+    fmt::print("{}", summary_of(result.calibration));
+    print_notes(result.monitor.notes, "");
+  }
   if (found) return done;
   fmt::print(stderr, "robomill: not calibrated: {}{}\n", monitor::reason(result.calibration),
              common.output.empty() || common.output == "-" ? "" : "; " + common.output + " is not written");

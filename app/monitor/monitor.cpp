@@ -25,6 +25,7 @@
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/inputs.hpp"
 #include "robomill/live/recorder.hpp"
@@ -314,6 +315,9 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (!common.quiet) {
     for (const std::string& note : basis.notes) fmt::print(stderr, "{}\n", printable(note));
   }
+  for (const std::string& warning : basis.warnings) {
+    fmt::print(stderr, "{}{}\n", io::warning_label, printable(warning));
+  }
   const live::Advisor advisor(basis);
   Outlets outlets(command, common, file, input.is_live);
   live::Session session(file,
@@ -343,6 +347,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     const live::RecordedRun recorded = recorder->run();
     page::Report page = monitor_page(recorded, file, input.name);
     page.assumed = basis.assumed;
+    page.warnings = basis.warnings;
     page.summary = summary + run_summary(recorded) + assumed_text(basis.assumed);
     write_report(common.report, page);
   }

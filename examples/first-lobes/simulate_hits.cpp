@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "examples/first-lobes/hammer.hpp"
 #include "robomill/io/append.hpp"
@@ -65,7 +66,9 @@ std::string toml_of(const std::vector<modal::Hit>& hits, std::uint64_t seed) {
 }
 
 void run(const std::filesystem::path& directory, const std::filesystem::path& modes, std::uint64_t seed) {
-  const modal::ModalModel model = modal::read_modes(modes);
+  std::vector<std::string> notes;
+  const modal::ModalModel model = modal::read_modes(modes, notes);
+  for (const std::string& note : notes) fmt::print("{}\n", note);
   const std::vector<modal::Hit> hits = examples::simulate_hits(model, 5, 0.05, examples::Hammer{}, seed);
   std::filesystem::create_directories(directory);
   for (const modal::Hit& hit : hits) io::write_file(directory / hit.file, csv_of(hit));

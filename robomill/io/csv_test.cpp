@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "robomill/io/table.hpp"
 
@@ -17,7 +19,8 @@ TEST(Csv, RowsComeBackAsTheyWere) {
   add_csv_row(table, {csv_number(0.0123, 1e-3), csv_number(std::nan("")), csv_text(evil)});
   add_csv_row(table, {csv_number(1.0 / 3.0), csv_number(std::numeric_limits<double>::infinity()), csv_text("")});
   EXPECT_EQ(table, "number,none,text\n12.3,,\"a \"\"b\"\", c\"\n0.333333333,,\"\"\n");
-  const TextTable read = parse_text_table(table, "t.csv");
+  std::vector<std::string> warnings;
+  const TextTable read = parse_text_table(table, "t.csv", warnings);
   ASSERT_EQ(read.rows.size(), 2U);
   EXPECT_EQ(read.text(read.rows[0], "text"), "a \"b\", c");
   EXPECT_EQ(read.text(read.rows[0], "none"), "");

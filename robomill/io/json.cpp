@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
 namespace {
@@ -129,8 +131,19 @@ std::string dump(const Json& json) {
   return out;
 }
 
+JsonNode::JsonNode(const Json& json, std::string file, std::vector<std::string>& warnings)
+    : JsonNode(json, std::move(file), std::string(), &warnings) {}
+
 JsonNode::JsonNode(const Json& json, std::string file, std::string path)
-    : json_(&json), file_(std::move(file)), path_(std::move(path)) {}
+    : JsonNode(json, std::move(file), std::move(path), nullptr) {}
+
+JsonNode::JsonNode(const Json& json, std::string file, std::string path, std::vector<std::string>* warnings)
+    : json_(&json), file_(std::move(file)), path_(std::move(path)), warnings_(warnings) {}
+
+void JsonNode::compare(double largest) const {
+  if (warnings_ == nullptr) return;
+  if (auto warning = unusual_warning(file_, path_, std::span(&largest, 1))) warnings_->push_back(std::move(*warning));
+}
 
 InvalidInput JsonNode::reject(std::string rule, std::string hint) const {
   InvalidInput::Parts parts{.where = file_, .field = path_, .rule = std::move(rule), .hint = std::move(hint)};
@@ -157,7 +170,7 @@ JsonNode JsonNode::at(const std::string& key) const {
   if (member == json_->end()) {
     throw InvalidInput(InvalidInput::Parts{.where = file_, .field = path, .rule = "is missing"});
   }
-  return {*member, file_, path};
+  return {*member, file_, path, warnings_};
 }
 
 std::size_t JsonNode::size() const {
@@ -166,11 +179,12 @@ std::size_t JsonNode::size() const {
 }
 
 JsonNode JsonNode::at(std::size_t index) const {
-  return {json_->at(index), file_, fmt::format("{}[{}]", path_, index + 1)};
+  return {json_->at(index), file_, fmt::format("{}[{}]", path_, index + 1), warnings_};
 }
 
 double JsonNode::number() const {
   if (!json_->is_number() || !std::isfinite(json_->get<double>())) throw reject("must be a finite number");
+  compare(json_->get<double>());
   return json_->get<double>();
 }
 
@@ -189,6 +203,7 @@ Eigen::VectorXd JsonNode::numbers() const {
     }
     values(i++) = entry.get<double>();
   }
+  if (values.size() > 0) compare(values.cwiseAbs().maxCoeff());
   return values;
 }
 

@@ -41,9 +41,13 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] std::string dump(const Json& json);
 
 /// A place in a JSON file while it is read; errors name the file and the path, "tip.json: modes[2].damping_ratio",
-/// lists counted from 1.
+/// lists counted from 1. Of a document every number that is read is compared with what is usual of its key
+/// (io/usual_ranges.hpp), of a list the largest.
 class JsonNode {
  public:
+  /// The root of a document. @param warnings  of numbers that are unusual; outlives this and what is below it
+  JsonNode(const Json& json, std::string file, std::vector<std::string>& warnings);
+  /// A place in what a program sent, whose numbers are not compared.
   JsonNode(const Json& json, std::string file, std::string path = {});
 
   [[nodiscard]] const Json& json() const { return *json_; }
@@ -63,8 +67,12 @@ class JsonNode {
   [[nodiscard]] InvalidInput reject(std::string rule, std::string hint = {}) const;
 
  private:
+  JsonNode(const Json& json, std::string file, std::string path, std::vector<std::string>* warnings);
+  void compare(double largest) const;
+
   const Json* json_;
   std::string file_, path_;
+  std::vector<std::string>* warnings_;  ///< null: not compared
 };
 
 /// @throws InvalidInput with file and line if the file is missing, empty or no JSON

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
@@ -17,6 +19,7 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
 namespace {
@@ -108,14 +111,56 @@ double stated_rate_hz(std::string_view content) {
   return 0.0;
 }
 
+/// What one of a unit is, whatever it is of; 0: unknown.
+double size_of(const std::string& unit) {
+  if (const double s = seconds_in(unit); s > 0.0) return s;
+  if (const double volts = volts_in(unit); volts > 0.0) return volts;
+  const SiFactor si = parse_unit(unit);
+  return si.quantity == Quantity::unknown ? 0.0 : si.factor;
+}
+
+/// Whether two texts may state one unit.
+bool may_be_one(const std::string& a, const std::string& b) {
+  const double size_a = size_of(a), size_b = size_of(b);
+  if (size_a == 0.0 || size_b == 0.0) return true;
+  const bool same = parse_unit(a).quantity == parse_unit(b).quantity &&
+                    (seconds_in(a) > 0.0) == (seconds_in(b) > 0.0) && (volts_in(a) > 0.0) == (volts_in(b) > 0.0);
+  return same && std::abs(size_a / size_b - 1.0) < 1e-3;
+}
+
+/// Times come in s. @throws InvalidInput where name and row of a column state two units
+void take_units(Record& record) {
+  for (std::size_t i = 0; i < record.units.size(); ++i) {
+    std::string& unit = record.units[i];
+    if (unit == "-") unit.clear();
+    const std::string of_name = unit_of_column(record.names[i]);
+    if (!may_be_one(unit, of_name)) {
+      throw InvalidInput(
+          record.file.string(),
+          fmt::format("column {} is in {} by its name and in {} by the row of units", record.names[i], of_name, unit));
+    }
+    const double s = seconds_in(unit);
+    if (s == 0.0 || s == 1.0) continue;
+    record.notes.push_back(fmt::format("{}: column {} is in {} by the row of units: converted to s",
+                                       record.file.string(), record.names[i], unit));
+    record.columns[i] *= s;
+    record.units[i] = "s";
+  }
+}
+
 Record read_text_record(const Path& path) {
   const std::string content = read_file(path);
   if (content.starts_with("LabVIEW Measurement")) throw unread_error(path, unread_record("record.lvm"));
-  const Table table = parse_table(content, path.string());
-  Record record{.file = path, .names = table.names, .columns = {}};
+  Record record{.file = path, .names = {}, .columns = {}};
+  const Table table = parse_table(content, path.string(), record.notes);
+  record.names = table.names;
   record.sample_rate_hz = stated_rate_hz(std::string_view(content).substr(0, table.begin));
+  record.rate_is_stated = record.sample_rate_hz > 0.0;
   record.names.resize(table.columns.size());
+  record.units = table.units;
+  record.units.resize(table.columns.size());
   for (const std::vector<double>& column : table.columns) record.columns.push_back(vector(column));
+  take_units(record);
   return record;
 }
 
@@ -214,6 +259,7 @@ void find_sample_rate(Record& record, const RecordOptions& options) {
     }
   }
   record.sample_rate_hz = sample_rate_of(record.column(time), record.file.string());
+  record.rate_is_stated = false;
 }
 
 }  // namespace
@@ -223,17 +269,26 @@ void RecordOptions::validate() const {
 }
 
 const Eigen::VectorXd& Record::column(const std::string& name_or_number) const {
+  return columns[place(name_or_number)];
+}
+
+std::string Record::unit(std::size_t place) const {
+  if (place < units.size() && !units[place].empty()) return units[place];
+  return place < names.size() ? unit_of_column(names[place]) : std::string();
+}
+
+std::size_t Record::place(const std::string& name_or_number) const {
   const auto found = std::find(names.begin(), names.end(), name_or_number);
   if (found != names.end()) {
     if (std::find(found + 1, names.end(), name_or_number) != names.end()) {
       throw InvalidInput(file.string(), "has several columns " + name_or_number, "Name them by number, from 1");
     }
-    return columns[static_cast<std::size_t>(found - names.begin())];
+    return static_cast<std::size_t>(found - names.begin());
   }
   std::size_t number = 0;
   const char* const end = name_or_number.data() + name_or_number.size();
   const std::from_chars_result read = std::from_chars(name_or_number.data(), end, number);
-  if (read.ec == std::errc() && read.ptr == end && number >= 1 && number <= columns.size()) return columns[number - 1];
+  if (read.ec == std::errc() && read.ptr == end && number >= 1 && number <= columns.size()) return number - 1;
   std::string known;
   for (const std::string& name : names) {
     if (!name.empty()) known += (known.empty() ? "" : ", ") + name;
@@ -241,6 +296,20 @@ const Eigen::VectorXd& Record::column(const std::string& name_or_number) const {
   throw InvalidInput(file.string(), "has no column " + name_or_number,
                      fmt::format("It has {} column{}{}{}", columns.size(), columns.size() == 1 ? "" : "s",
                                  known.empty() ? "" : ": ", known));
+}
+
+double rate_of(const Record& record, double given_hz, std::string_view key, std::vector<std::string>& notes) {
+  constexpr double tolerance = 1e-3;
+  const double own_hz = record.sample_rate_hz;
+  if (own_hz <= 0.0 || given_hz <= 0.0) return std::max(own_hz, given_hz);
+  if (std::abs(own_hz / given_hz - 1.0) <= tolerance) return record.rate_is_stated ? given_hz : own_hz;
+  if (!record.rate_is_stated) {
+    throw InvalidInput(record.file.string(),
+                       fmt::format("was sampled at {:.6g} Hz, not at {} = {:.6g} Hz", own_hz, key, given_hz));
+  }
+  notes.push_back(fmt::format("{}{}: its header states {:.6g} Hz, and {} = {:.6g} Hz is taken. One of them is wrong.",
+                              warning_label, record.file.string(), own_hz, key, given_hz));
+  return given_hz;
 }
 
 UnreadRecord unread_record(const Path& path) {

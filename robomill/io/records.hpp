@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -12,13 +13,19 @@ namespace robomill::io {
 struct Record {
   std::filesystem::path file;
   double sample_rate_hz = 0.0;           ///< [Hz]; 0 where the file does not say
+  bool rate_is_stated = false;           ///< by the header of a text, which nothing else of the file confirms
   std::vector<std::string> names;        ///< one a column; empty texts where the file names none
+  std::vector<std::string> units = {};   ///< one a column, of a row of units below the names; empty texts: not said
   std::vector<Eigen::VectorXd> columns;  ///< in the order of the file, a column of time among them
   std::vector<std::string> notes = {};   ///< what a reader must know: data sets skipped, units converted
 
   /// The column of that name, or of that number from 1 where no column has the name.
   /// @throws InvalidInput naming the columns that are there
   [[nodiscard]] ROBOMILL_API const Eigen::VectorXd& column(const std::string& name_or_number) const;
+  /// Its place, and its errors.
+  [[nodiscard]] ROBOMILL_API std::size_t place(const std::string& name_or_number) const;
+  /// Its unit as the row of units says it, else as its name does (io/si.hpp); empty: not said.
+  [[nodiscard]] ROBOMILL_API std::string unit(std::size_t place) const;
 };
 
 struct RecordOptions {
@@ -30,11 +37,17 @@ struct RecordOptions {
 
 /// Reads a record by its ending, of text without a column of time with the rate that its header states ("sample rate:
 /// 25600 Hz", "Delta_X 3.9e-5"): .csv .txt .dat .asc (columns parted by commas, semicolons, tabs or blanks, with or
-/// without header), .mat (v5, v7.3: one variable a column), .uff .unv .uf (time responses), .wav (one channel a
-/// column).
+/// without header; a column whose row of units is one of time is converted to s), .mat (v5, v7.3: one variable a
+/// column), .uff .unv .uf (time responses), .wav (one channel a column).
 /// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
 ///     number of values than those before it, or the time does not run evenly
 [[nodiscard]] ROBOMILL_API Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
+
+/// The rate of a record for which the user gives one too; 0: neither is known. One that only a header states gives way
+/// to the user's, with a note. @param key  what the user gave it as; @param given_hz  0: not given
+/// @throws InvalidInput with the record's file where both are known, none is only stated, and they differ
+[[nodiscard]] ROBOMILL_API double rate_of(const Record& record, double given_hz, std::string_view key,
+                                          std::vector<std::string>& notes);
 
 /// What a file is that holds a record and is not read, and what to do: "a LabVIEW measurement file, which is not read
 /// yet". Empty texts where the ending says nothing of it.

@@ -50,6 +50,15 @@ TEST(SampleSource, ReadsColumnsByNameOrNumber) {
   EXPECT_DOUBLE_EQ(open_samples(csv, named({"ax"}))->sample_rate_hz(), 10.0);
 }
 
+TEST(SampleSource, TakesTheUnitOfTheTimeFromARowOfUnits) {
+  const test::Folder folder;
+  const auto csv = folder.file("r.csv", "Time,ax\nms,g\n0,1\n0.5,2\n1,3\n");
+  EXPECT_EQ(read(csv, named({"ax"})), (std::vector<float>{1, 2, 3}));
+  EXPECT_DOUBLE_EQ(open_samples(csv, named({"ax"}))->sample_rate_hz(), 2000.0);
+  EXPECT_NE(rejection(folder.file("s.csv", "Time,ax\n(ms),(foo)\n0,1\n"), named({"ax"})).find("ax = \"foo\""),
+            std::string::npos);
+}
+
 TEST(SampleSource, ReadsTextOfManyKinds) {
   const test::Folder folder;
   EXPECT_EQ(read(folder.file("a.csv", "1\n2\n3\n"), named({"ax_m_per_s2"})), (std::vector<float>{1, 2, 3}));

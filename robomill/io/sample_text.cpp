@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/sample_parts.hpp"
+#include "robomill/io/si.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
@@ -112,13 +113,15 @@ class TextSource : public SampleSource {
 
   /// The last line above the numbers that has as many fields, or the one above it where that one holds units.
   void take_names(const std::vector<std::string>& header) {
+    std::vector<std::string> below;
     for (std::size_t back = 1; back <= std::min<std::size_t>(header.size(), 2); ++back) {
       const std::string& line = header[header.size() - back];
       const char separator = separator_of(line) == '\t' || separator_of(line) == ' ' ? ' ' : separator_of(line);
       std::vector<std::string> names = split_texts(line, separator);
-      if (names.size() != count_) return;
-      names_ = std::move(names);
+      if (names.size() != count_) break;
+      below = std::exchange(names_, std::move(names));
     }
+    if (!below.empty()) units_ = units_of_row(below, names_, where_).value_or(std::vector<std::string>());
   }
 
   /// From the first rows, where a column is the time.
@@ -126,6 +129,8 @@ class TextSource : public SampleSource {
     const auto time = std::find_if(names_.begin(), names_.end(), is_time_column);
     if (time == names_.end()) return;
     const auto column = static_cast<std::size_t>(time - names_.begin());
+    // Of a row of units, where there is one: of the name it is s.
+    const double unit_s = column < units_.size() ? seconds_in(units_[column]) : 0.0;
     std::vector<double> times_s;
     while (ahead_.size() < rows_for_the_rate) {
       const std::optional<std::string_view> line = bytes_->line();
@@ -136,7 +141,7 @@ class TextSource : public SampleSource {
       split(line);
       const std::optional<double> time_s =
           fields_.size() == count_ ? number_of(fields_[column], separator_) : std::nullopt;
-      if (time_s) times_s.push_back(*time_s);
+      if (time_s) times_s.push_back(unit_s > 0.0 ? unit_s * *time_s : *time_s);
     }
     const Eigen::Map<const Eigen::VectorXd> times(times_s.data(), static_cast<Eigen::Index>(times_s.size()));
     if (columns.sample_rate_hz <= 0.0) {
@@ -176,7 +181,7 @@ class TextSource : public SampleSource {
   std::size_t count_ = 0, line_number_ = 0;
   std::size_t followed_column_ = std::numeric_limits<std::size_t>::max();
   double followed_factor_ = 1.0, followed_ = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> names_, unquoted_;
+  std::vector<std::string> names_, units_, unquoted_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> pick_;
 };

@@ -85,11 +85,8 @@ std::string without_sample_mark(std::string document, std::string_view key) {
     if (!found) return document;
     const auto begin = static_cast<std::size_t>(line.text.data() - document.data());
     document.erase(begin + found->begin, found->end - found->begin);
-    while (begin < document.size() && found->end == line.text.size() && found->begin >= 2 &&
-           document.compare(begin + found->begin - 2, 2, "# ") == 0) {
-      document.erase(begin + found->begin - 2, 2);  // a comment of the mark alone
-      break;
-    }
+    const bool alone = found->end == line.text.size();  // a comment of the mark alone
+    if (alone) document.erase(begin + found->begin - 2, 2);
     return document;
   }
   return document;

@@ -62,6 +62,20 @@ TEST(Samples, MarksListNumbersAndTextsInTheirOrder) {
   EXPECT_EQ(sample_mark("true"), "sample true");
 }
 
+// A header behind a # is no table of the live keys below it.
+TEST(Samples, ACommentedHeaderIsThatOfCommentsAlone) {
+  const std::string text =
+      "[cut]\n# [tool]\n# teeth = 3\nlead_deg = 4   # sample 4: of the cut\n# [[hits]]\n[[hits]]\n"
+      "file = \"a\"   # sample a:\n# [more]\n# force = 2\ntime = 1   # sample 1:\n# responses = 3\n";
+  EXPECT_EQ(keys(TomlSource("d.toml", text)),
+            (std::vector<std::string>{"cut.lead_deg 4", "hits[1].file \"a\"", "hits[1].time 1"}));
+  TomlFile file(TomlSource("d.toml", text));
+  const auto line_of = [&](const char* key) { return test::rejection([&] { file.require(key); }).substr(0, 9); };
+  EXPECT_EQ(line_of("tool.teeth"), "d.toml:3:");
+  EXPECT_EQ(line_of("more.force"), "d.toml:9:");
+  EXPECT_EQ(line_of("hits[0].responses"), "d.toml:11");
+}
+
 // The line of the comment, what it is and what to do.
 TEST(Samples, AMissingKeyPointsAtItsComment) {
   TomlFile file(

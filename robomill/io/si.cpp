@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "robomill/io/text.hpp"
 
 namespace robomill::io {
 namespace {
@@ -83,6 +88,13 @@ SiFactor find(std::string_view text) {
   return {};
 }
 
+template <std::size_t n>
+double factor_in(const std::array<std::pair<std::string_view, double>, n>& known, std::string_view text) {
+  const std::string unit = plain(text);
+  const auto* const found = std::ranges::find(known, unit, &std::pair<std::string_view, double>::first);
+  return found == known.end() ? 0.0 : found->second;
+}
+
 bool says_nothing(std::string_view text) {
   return text.empty() || text == "none" || text == "-" || text == "unknown";
 }
@@ -123,6 +135,62 @@ SiFactor parse_unit(std::string_view text) {
     return ratio;
   }
   return {};
+}
+
+double seconds_in(std::string_view unit) {
+  return factor_in<5>({{{"s", 1.0}, {"sec", 1.0}, {"seconds", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}}, unit);
+}
+
+double volts_in(std::string_view unit) {
+  return factor_in<5>({{{"v", 1.0}, {"volt", 1.0}, {"volts", 1.0}, {"mv", 1e-3}, {"millivolt", 1e-3}}}, unit);
+}
+
+bool is_unit(std::string_view text) {
+  // What a column beside force and response may be in; the degree sign as plain() leaves it.
+  static constexpr std::string_view others[] = {"-",
+                                                "%",
+                                                "ue",
+                                                "strain",
+                                                "um/m",
+                                                "deg",
+                                                "\xB0",
+                                                "rpm",
+                                                "1/min",
+                                                "hz",
+                                                "khz",
+                                                "\xB0"
+                                                "c",
+                                                "degc",
+                                                "ma",
+                                                "pa",
+                                                "kpa",
+                                                "mpa",
+                                                "bar",
+                                                "kw",
+                                                "kg",
+                                                "min"};
+  constexpr std::string_view epsilon = "\xCE\xB5";  // of strains, in UTF-8
+  if (seconds_in(text) > 0.0 || volts_in(text) > 0.0 || text.find(epsilon) != std::string_view::npos) return true;
+  return parse_unit(text).quantity != Quantity::unknown || std::ranges::find(others, plain(text)) != std::end(others);
+}
+
+std::string unit_of_column(std::string_view name) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
+    const std::size_t begin = name.rfind(open), end = name.rfind(close);
+    if (begin != std::string_view::npos && end != std::string_view::npos && begin < end) {
+      return std::string(trimmed(name.substr(begin + 1, end - begin - 1)));
+    }
+  }
+  if (std::string unit = unit_of_key(lowered(name)); !unit.empty()) return unit;
+  // "in" and "m" behind a blank are words and names too.
+  static constexpr std::array<std::string_view, 8> sure = {"N", "kN", "g", "V", "mV", "s", "ms", "mm"};
+  const std::string_view whole = trimmed(name);
+  const std::size_t blank = whole.find_last_of(" \t");
+  if (blank == std::string_view::npos) return {};
+  const std::string_view last = whole.substr(blank + 1);
+  const bool unit = std::ranges::find(sure, last) != sure.end() ||
+                    (last.find('/') != std::string_view::npos && parse_unit(last).quantity != Quantity::unknown);
+  return unit ? std::string(last) : std::string();
 }
 
 SiFactor si_factor(const UffAxis& axis, double length_factor, double force_factor) {

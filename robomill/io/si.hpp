@@ -21,6 +21,17 @@ struct SiFactor {
 /// Unknown where the text is no unit known here.
 [[nodiscard]] SiFactor parse_unit(std::string_view text);
 
+/// Seconds in a unit of time, "ms"; volts in one of voltage, "mV"; 0 where the text is none.
+[[nodiscard]] double seconds_in(std::string_view unit);
+[[nodiscard]] double volts_in(std::string_view unit);
+
+/// Whether a text is a unit, of whatever quantity: "N", "m/s²", "ms", "mV", "µε", "rpm", "-".
+[[nodiscard]] bool is_unit(std::string_view text);
+
+/// The unit that a column's name states: what stands in brackets at its end, else the unit of its last parts, else its
+/// last word where that is a unit and not likely a word: "acc x [m/s²]", "ax_m_per_s2", "Force N". Empty: none.
+[[nodiscard]] std::string unit_of_column(std::string_view name);
+
 /// An axis of a universal file: by its unit's text, else by data set 164, else taken as SI. The quantity is that of its
 /// data type, or of its unit's text where the type says nothing.
 [[nodiscard]] SiFactor si_factor(const UffAxis& axis, double length_factor, double force_factor);

@@ -6,10 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/si.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
 namespace {
@@ -146,7 +149,7 @@ class TableReader {
 
   void take_names(const std::vector<std::pair<std::size_t, std::string_view>>& header, std::size_t count) {
     table_.columns.resize(count);
-    std::vector<std::string_view> names;
+    std::vector<std::string_view> names, below;
     for (std::size_t back = 1; back <= std::min<std::size_t>(header.size(), 2); ++back) {
       const std::string_view line = header[header.size() - back].second;
       // The names may be parted otherwise than the numbers, but words of prose are no names.
@@ -157,9 +160,12 @@ class TableReader {
       // Above the names a number says something of the record: "sample rate, 25600".
       const auto is_number = [this](std::string_view field) { return parse_field(field, separator_).has_value(); };
       if (back == 2 && std::any_of(fields.begin(), fields.end(), is_number)) break;
-      names = std::move(fields);
+      below = std::exchange(names, std::move(fields));
     }
     table_.names.assign(names.begin(), names.end());
+    if (below.empty()) return;
+    const std::string line = fmt::format("{}:{}", where_, header.back().first);
+    table_.units = units_of_row({below.begin(), below.end()}, table_.names, line).value_or(std::vector<std::string>());
   }
 
   [[nodiscard]] std::string column_name(std::size_t column) const {
@@ -236,8 +242,42 @@ std::vector<std::string> split_texts(std::string_view line, char separator) {
   return out;
 }
 
-Table parse_table(std::string_view content, const std::string& where) {
-  return TableReader(content, where).read();
+std::optional<std::vector<std::string>> units_of_row(const std::vector<std::string>& fields,
+                                                     const std::vector<std::string>& names, const std::string& where) {
+  std::vector<std::string> units;
+  std::size_t filled = 0, bracketed = 0, known = 0;
+  for (const std::string& field : fields) {
+    std::string_view text = trimmed(field);
+    const bool in_brackets = text.size() >= 2 && ((text.front() == '(' && text.back() == ')') ||
+                                                  (text.front() == '[' && text.back() == ']'));
+    if (in_brackets) text = trimmed(text.substr(1, text.size() - 2));
+    units.emplace_back(text);
+    filled += field.empty() ? 0 : 1;
+    bracketed += in_brackets ? 1 : 0;
+    known += !text.empty() && is_unit(text) ? 1 : 0;
+  }
+  if (filled == 0 || (2 * known < filled && bracketed < filled)) return std::nullopt;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (units[i].empty() || is_unit(units[i])) continue;
+    const bool named = i < names.size() && !names[i].empty();
+    throw InvalidInput(InvalidInput::Parts{.where = where,
+                                           .field = named ? names[i] : fmt::format("column {}", i + 1),
+                                           .value = fmt::format("\"{}\"", units[i].substr(0, 40)),
+                                           .rule = "is no unit known here, in a row of units",
+                                           .hint = "Known are N, kN, m/s^2, g, mm, um, V, mV, s, ms and the like"});
+  }
+  return units;
+}
+
+Table parse_table(std::string_view content, const std::string& where, std::vector<std::string>& warnings) {
+  Table table = TableReader(content, where).read();
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const auto by_size = [](double value) { return std::abs(value); };
+    const double largest = *std::ranges::max_element(table.columns[i], {}, by_size);
+    if (auto warning = unusual_warning(where, table.names[i], std::span(&largest, 1)))
+      warnings.push_back(std::move(*warning));
+  }
+  return table;
 }
 
 std::optional<double> parse_cell(std::string_view field) {
@@ -279,7 +319,35 @@ InvalidInput TextTable::reject(const Row& row, std::string_view name, std::strin
   return InvalidInput(std::move(parts));
 }
 
-TextTable parse_text_table(std::string_view content, const std::string& where) {
+namespace {
+
+/// The first unusual number of each column; of one whose largest counts that.
+void compare(const TextTable& table, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const UsualRange* row_of_key = usual_range(table.names[i]);
+    if (row_of_key == nullptr) continue;
+    const bool each = row_of_key->compared == Compared::each;
+    std::vector<double> values;
+    std::size_t line = 0;  // of the largest
+    double largest = 0.0;
+    std::optional<std::string> warning;
+    for (const TextTable::Row& row : table.rows) {
+      const std::optional<double> value = parse_cell(row.fields[i]);
+      if (!value) continue;
+      if (each) warning = unusual_warning(fmt::format("{}:{}", table.where, row.line), table.names[i], {&*value, 1});
+      if (warning) break;
+      values.push_back(*value);
+      if (line == 0 || std::abs(*value) > largest) line = row.line;
+      largest = std::max(largest, std::abs(*value));
+    }
+    if (!each) warning = unusual_warning(fmt::format("{}:{}", table.where, line), table.names[i], values);
+    if (warning) warnings.push_back(std::move(*warning));
+  }
+}
+
+}  // namespace
+
+TextTable parse_text_table(std::string_view content, const std::string& where, std::vector<std::string>& warnings) {
   check_encoding(content, where);
   TextTable out{.where = where};
   char separator = ',';
@@ -311,6 +379,7 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
     out.rows.push_back(std::move(row));
   }
   if (out.rows.empty()) throw InvalidInput(where, "holds no row below a line of names");
+  compare(out, warnings);
   return out;
 }
 

@@ -11,7 +11,8 @@ namespace robomill::io {
 
 /// Columns of numbers in a text file.
 struct Table {
-  std::vector<std::string> names;            ///< one a column; empty where the file has no header
+  std::vector<std::string> names;       ///< one a column; empty where the file has no header
+  std::vector<std::string> units = {};  ///< of a row of units below the names, without brackets; empty: no such row
   std::vector<std::vector<double>> columns;  ///< all of one length, >= 1
   std::size_t begin = 0;                     ///< of the first line of numbers in the text
 };
@@ -20,13 +21,16 @@ struct Table {
 /// order.
 ///
 /// Lines that are empty or begin with #, % or // are skipped. Lines before the first line of numbers are a header; the
-/// names are the first of the last two of them that have as many fields as there are columns (the second may hold
-/// units). Names and numbers may stand in double quotes; numbers may have a sign +, exponents of any length, D for E,
-/// and a comma for the point where columns are parted by semicolons or tabs.
+/// names are the first of the last two of them that have as many fields as there are columns. The second holds units
+/// where half of its fields are known ones, or all stand in brackets. Names and numbers may stand in double quotes;
+/// numbers may have a sign +, exponents of any length, D for E, and a comma for the point where columns are parted by
+/// semicolons or tabs.
 /// @param where  names the file in messages
-/// @throws InvalidInput with file and line if there is no line of numbers, a value is empty or no finite number, or a
-///     line has another number of values than those before it
-[[nodiscard]] Table parse_table(std::string_view content, const std::string& where);
+/// @param warnings  gains a sentence for each column whose largest number is unusual of its name (io/usual_ranges.hpp)
+/// @throws InvalidInput with file and line if there is no line of numbers, a row of units holds one that is not known,
+/// a
+///     value is empty or no finite number, or a line has another number of values than those before it
+[[nodiscard]] Table parse_table(std::string_view content, const std::string& where, std::vector<std::string>& warnings);
 
 /// Rows of text under named columns.
 struct TextTable {
@@ -49,12 +53,20 @@ struct TextTable {
                                     std::string hint = {}) const;
 };
 
+/// The units in the fields of a line below the names of columns, without brackets; none where it is no row of units.
+/// @throws InvalidInput naming line and column, if one is not known
+[[nodiscard]] std::optional<std::vector<std::string>> units_of_row(const std::vector<std::string>& fields,
+                                                                   const std::vector<std::string>& names,
+                                                                   const std::string& where);
+
 /// Reads a first line of names and rows below it, parted by semicolons, tabs or commas, whichever the names are. Lines
 /// that are empty or begin with #, % or // are skipped; fields may stand in double quotes.
 /// @param where  names the file in messages
+/// @param warnings  gains a sentence for each column that holds a number which is unusual of its name, the first one
 /// @throws InvalidInput with file and line if there is no row, a name is empty or comes twice, or a row has more fields
 ///     than there are names
-[[nodiscard]] TextTable parse_text_table(std::string_view content, const std::string& where);
+[[nodiscard]] TextTable parse_text_table(std::string_view content, const std::string& where,
+                                         std::vector<std::string>& warnings);
 
 /// Whether a line of a table is skipped: empty, or beginning with #, % or //.
 [[nodiscard]] bool is_table_comment(std::string_view line);

@@ -16,7 +16,8 @@ using Columns = std::vector<std::vector<double>>;
 using Names = std::vector<std::string>;
 
 Table parse(const std::string& content) {
-  return parse_table(content, "t.csv");
+  std::vector<std::string> warnings;
+  return parse_table(content, "t.csv", warnings);
 }
 
 TEST(Table, ReadsEverySeparator) {
@@ -73,8 +74,27 @@ TEST(Table, RejectsWhatIsNoTable) {
   EXPECT_EQ(says(prose), "t.csv:201: \"words\"; is no number");
 }
 
+TEST(Table, ReadsARowOfUnits) {
+  const auto units = [](const std::string& row) { return parse("Time,Force,Acc\n" + row + "\n0,1,2\n1,2,3\n").units; };
+  EXPECT_EQ(units("s,N,g"), (Names{"s", "N", "g"}));
+  EXPECT_EQ(units("(s),(kN),(m/s^2)"), (Names{"s", "kN", "m/s^2"}));
+  EXPECT_EQ(units("[ms],[V],[µε]"), (Names{"ms", "V", "µε"}));
+  EXPECT_EQ(units("\"s\",\"N\",\"m/s²\""), (Names{"s", "N", "m/s²"}));
+  EXPECT_EQ(units("s,,-"), (Names{"s", "", "-"}));
+  EXPECT_EQ(units("one,two,three"), Names{}) << "words are none";
+  EXPECT_EQ(parse("Time,Force,Acc\n0,1,2\n").units, Names{});
+  EXPECT_EQ(parse("Time;Force;Acc\ns;N;g\n0,5;1;2\n").units, (Names{"s", "N", "g"}));
+  const auto wrong = [&](const std::string& row) { return rejection([&] { static_cast<void>(units(row)); }); };
+  EXPECT_EQ(
+      wrong("s,N,furlong"),
+      "t.csv:2: Acc = \"furlong\"; is no unit known here, in a row of units. Known are N, kN, m/s^2, g, mm, um, V, "
+      "mV, s, ms and the like");
+  EXPECT_NE(wrong("(s),(foo),(bar)").find("t.csv:2: Force = \"foo\""), std::string::npos) << wrong("(s),(foo),(bar)");
+}
+
 TEST(TextTable, FindsColumnsAndReportsTheirFields) {
-  const TextTable table = parse_text_table("# tools\nname,length_mm\nmill,12.5\nball,x\nslim\n", "t.csv");
+  std::vector<std::string> warnings;
+  const TextTable table = parse_text_table("# tools\nname,length_mm\nmill,12.5\nball,x\nslim\n", "t.csv", warnings);
   EXPECT_EQ(table.column("length_mm"), 1u);
   EXPECT_FALSE(table.column("length"));
   EXPECT_EQ(table.text(table.rows[0], "length_mm"), "12.5");

@@ -438,8 +438,9 @@ void TomlFile::State::check_known(const toml::node& node, const std::string& key
   }
 }
 
-void TomlFile::done() const {
+std::vector<std::string> TomlFile::done() const {
   state_->check_known(state_->root, "");
+  return unusual();
 }
 
 void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
@@ -469,16 +470,7 @@ void TomlFile::State::compare(const toml::node& node, const std::string& key, st
   if (array == nullptr) {
     if (const std::optional<double> number = finite_number(node)) values.push_back(*number);
   }
-  const std::optional<Unusual> found = unusual_value(key, values);
-  if (!found) return;
-  out.push_back(fmt::format("{}{}", warning_label,
-                            InvalidInput(InvalidInput::Parts{.where = where(&node),
-                                                             .field = shown_key(key),
-                                                             .number = found->value,
-                                                             .unit = unit_of_key(key),
-                                                             .rule = found->rule,
-                                                             .hint = found->hint})
-                                .what()));
+  if (auto warning = unusual_warning(where(&node), shown_key(key), values)) out.push_back(std::move(*warning));
 }
 
 std::vector<std::string> TomlFile::unusual() const {

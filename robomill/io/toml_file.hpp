@@ -93,8 +93,9 @@ class TomlFile {
       throw located(error);
     }
   }
+  /// Ends the reading. What is unusual() comes back, so that no reader can leave it out of its notes.
   /// @throws InvalidInput on a key that no call has read, naming the nearest known one
-  void done() const;
+  [[nodiscard]] std::vector<std::string> done() const;
   /// A sentence for each number of the file outside its usual range (io/usual_ranges.hpp), in the order of the file's
   /// keys: "Warning: file:line: key = value unit; is unusual: … is usual. hint".
   [[nodiscard]] std::vector<std::string> unusual() const;

@@ -167,9 +167,10 @@ TEST_F(Toml, RejectsKeysThatNobodyRead) {
   double number = 0.0;
   std::vector<double> list;
   std::string text;
-  EXPECT_EQ(rejection([&] { file.done(); }), name + ":7: coefficients.tangential_n_per_mm2: is not known here");
+  EXPECT_EQ(rejection([&] { static_cast<void>(file.done()); }),
+            name + ":7: coefficients.tangential_n_per_mm2: is not known here");
   file.number("coefficients.tangential_n_per_mm", "", 1.0, number);
-  EXPECT_EQ(rejection([&] { file.done(); }),
+  EXPECT_EQ(rejection([&] { static_cast<void>(file.done()); }),
             name +
                 ":7: coefficients.tangential_n_per_mm2: is not known here. Did you mean "
                 "coefficients.tangential_n_per_mm?");
@@ -183,11 +184,12 @@ TEST_F(Toml, RejectsKeysThatNobodyRead) {
     file.text(hit + ".file", text);
     file.number(hit + ".window_s", "", 1.0, number);
   }
-  EXPECT_EQ(rejection([&] { file.done(); }), name + ":16: hits[1].responses.x: is not known here");
+  EXPECT_EQ(rejection([&] { static_cast<void>(file.done()); }), name + ":16: hits[1].responses.x: is not known here");
   (void)file.keys("hits[0].responses");
-  EXPECT_EQ(rejection([&] { file.done(); }), name + ":3: tool.teeth: is not known here. It belongs in [cut]");
+  EXPECT_EQ(rejection([&] { static_cast<void>(file.done()); }),
+            name + ":3: tool.teeth: is not known here. It belongs in [cut]");
   file.number("tool.teeth", "", 1.0, number);
-  EXPECT_NO_THROW(file.done());
+  EXPECT_NO_THROW(static_cast<void>(file.done()));
 }
 
 TEST(TomlFiles, RejectsWhatIsNoTomlWithItsLine) {
@@ -209,7 +211,7 @@ TEST(TomlFiles, RejectsWhatIsNoTomlWithItsLine) {
   EXPECT_NE(rejection([&] { odd.integer("c", "c", whole); }).find(":3: c = 3e+09"), std::string::npos);
   EXPECT_NE(rejection([&] { odd.numbers("d", "d", 1.0, list); }).find(":4: d: must be a list"), std::string::npos);
   for (const char* key : {"a", "b", "c", "d"}) odd.skip(key);
-  EXPECT_NE(rejection([&] { odd.done(); }).find(":5: e: is not known here"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(odd.done()); }).find(":5: e: is not known here"), std::string::npos);
 }
 
 TEST(TomlFiles, RejectsWhatNestsTooDeeply) {
@@ -240,7 +242,7 @@ TEST(TomlFiles, RejectsWhatNestsTooDeeply) {
                                              "\" # " + repeated("a.b ", 1000) + "\nc = '''" + repeated("x.y\n", 1000) +
                                              "'''\n"));
   for (const char* key : {"a", "b", "c"}) file.skip(key);
-  file.done();
+  static_cast<void>(file.done());
 }
 
 TEST(TomlFiles, SurvivesMutations) {
@@ -261,7 +263,7 @@ TEST(TomlFiles, SurvivesMutations) {
       file.numbers("tool.pitch_deg", "pitch_rad", units::deg, list);
       for (std::size_t i = 0; i < file.tables("hits"); ++i)
         (void)file.keys("hits[" + std::to_string(i) + "].responses");
-      file.done();
+      static_cast<void>(file.done());
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find("mutated.toml"), std::string::npos) << error.what();
     }

@@ -32,7 +32,8 @@ bool is_header(std::string_view line) {
 
 std::vector<TomlLine> toml_lines(std::string_view text) {
   std::vector<TomlLine> out;
-  std::string table;
+  // A header behind a # is that of the keys behind a # below it: the next live key is still of the live table.
+  std::string table, of_comments;
   std::map<std::string, std::size_t, std::less<>> entries;  ///< of each array of tables, so far
   for (std::size_t number = 1; !text.empty(); ++number) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -44,16 +45,18 @@ std::vector<TomlLine> toml_lines(std::string_view text) {
     const bool array = rest.starts_with("[[");
     if (is_header(rest)) {
       const std::size_t begin = array ? 2 : 1;
-      table = trimmed(rest.substr(begin, rest.find(']') - begin));
+      of_comments = trimmed(rest.substr(begin, rest.find(']') - begin));
       if (array) {
-        const std::size_t index = comment ? entries[table] : entries[table]++;
-        table += fmt::format("[{}]", index);
+        const std::size_t index = comment ? entries[of_comments] : entries[of_comments]++;
+        of_comments += fmt::format("[{}]", index);
       }
+      if (!comment) table = of_comments;
       continue;
     }
     const std::string_view key = key_of(rest);
     if (key.empty()) continue;
-    out.push_back({.key = table.empty() ? std::string(key) : fmt::format("{}.{}", table, key),
+    if (!comment) of_comments = table;
+    out.push_back({.key = of_comments.empty() ? std::string(key) : fmt::format("{}.{}", of_comments, key),
                    .text = line,
                    .number = number,
                    .is_comment = comment});

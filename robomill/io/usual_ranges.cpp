@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "robomill/base/error.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::io {
@@ -75,6 +77,24 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"cone_deg", 1, 45},
     {"cone_step_deg", 1, 45},
     {"power_time_s", 0.001, 60},
+    // measured: forces, vibration, displacements under a load; the largest of a column
+    {"force_n", 0.1, 50'000, largest},
+    {"fx_n", 0.01, 20'000, largest},
+    {"fy_n", 0.01, 20'000, largest},
+    {"fz_n", 0.01, 20'000, largest},
+    {"mx_n_m", 0.001, 5000, largest},
+    {"my_n_m", 0.001, 5000, largest},
+    {"mz_n_m", 0.001, 5000, largest},
+    {"dx_mm", 1e-4, 50, largest},
+    {"dy_mm", 1e-4, 50, largest},
+    {"dz_mm", 1e-4, 50, largest},
+    {"deviation_mm", 1e-5, 5, largest},
+    {"ax_m_per_s2", 0.001, 1e6, largest},
+    {"ay_m_per_s2", 0.001, 1e6, largest},
+    {"az_m_per_s2", 0.001, 1e6, largest},
+    {"ax_g", 1e-4, 1e5, largest},
+    {"ay_g", 1e-4, 1e5, largest},
+    {"az_g", 1e-4, 1e5, largest},
     // force coefficients; of polynomials in the position angle no coefficient has a usual range of its own
     {"tangential_n_per_mm2", 5, 12'000, largest},
     {"radial_n_per_mm2", 1, 12'000, largest},
@@ -93,6 +113,8 @@ constexpr std::array rows = std::to_array<UsualRange>({
     // structure
     {"frequency_hz", 1, 30'000},
     {"frequency_std_hz", 0, 0, any},
+    {"modes[].std.frequency_hz", 0, 0, any},
+    {"modes[].std.damping_ratio", 0, 0, any},
     {"damping_ratio", 2e-4, 0.35},
     {"modal_mass_kg", 1e-5, 5000},
     {"modal_stiffness_n_per_um", 0.1, 1000},
@@ -381,6 +403,19 @@ std::optional<Unusual> unusual_value(std::string_view key, std::span<const doubl
     if (value != 0.0 && !within(*row, value)) return unusual(value, hint_of(*row, key, value));
   }
   return std::nullopt;
+}
+
+std::optional<std::string> unusual_warning(std::string_view where, std::string_view key,
+                                           std::span<const double> values) {
+  std::optional<Unusual> found = unusual_value(key, values);
+  if (!found) return std::nullopt;
+  const InvalidInput said(InvalidInput::Parts{.where = std::string(where),
+                                              .field = std::string(key),
+                                              .number = found->value,
+                                              .unit = unit_of_key(key),
+                                              .rule = std::move(found->rule),
+                                              .hint = std::move(found->hint)});
+  return fmt::format("{}{}", warning_label, said.what());
 }
 
 std::vector<std::string> take_warnings(std::vector<std::string>& notes) {

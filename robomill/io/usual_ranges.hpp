@@ -45,6 +45,10 @@ struct Unusual {
 /// no row is known. The hint names the first unit that would bring the value into the range.
 [[nodiscard]] ROBOMILL_API std::optional<Unusual> unusual_value(std::string_view key, std::span<const double> values);
 
+/// The same as a sentence: "Warning: where: key = value unit; is unusual: … is usual. hint".
+[[nodiscard]] ROBOMILL_API std::optional<std::string> unusual_warning(std::string_view where, std::string_view key,
+                                                                      std::span<const double> values);
+
 /// What a note that is a warning begins with.
 inline constexpr std::string_view warning_label = "Warning: ";
 

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "robomill/io/file.hpp"
+#include "robomill/io/json.hpp"
+#include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "testing/support.hpp"
@@ -183,6 +185,39 @@ TEST(UsualRanges, AreSaidWithFileLineKeyAndValue) {
   std::vector<std::string> notes = {"one", found[0], "two"};
   EXPECT_EQ(take_warnings(notes), std::vector<std::string>{found[0].substr(9)});
   EXPECT_EQ(notes, (std::vector<std::string>{"one", "two"}));
+}
+
+TEST(UsualRanges, AreThoseOfColumnsToo) {
+  std::vector<std::string> warnings;
+  static_cast<void>(
+      parse_text_table("tool,diameter_mm,fx_n\na,12,0.2\nb,0.012,900\nc,0.010,-400\n", "t.csv", warnings));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "Warning: t.csv:3: diameter_mm = 0.012 mm; is unusual: 0.05 to 250 mm is usual. Is it in m?");
+  warnings.clear();
+  static_cast<void>(parse_text_table("fx_n,fy_n\n1,0.001\n90000,0\n", "t.csv", warnings));
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("t.csv:3: fx_n = 90000 N"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("t.csv:2: fy_n = 0.001 N"), std::string::npos) << warnings[1];
+  warnings.clear();
+  static_cast<void>(parse_table("time_s,force_n\n0,0\n1,0.04\n2,-0.01\n", "t.csv", warnings));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("t.csv: force_n = 0.04 N; is unusual"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("Is it in kN?"), std::string::npos) << warnings[0];
+}
+
+TEST(UsualRanges, AreThoseOfJsonDocumentsToo) {
+  const Json json = Json::parse(R"({"modes": [{"frequency_hz": 0.7, "std": {"frequency_hz": 1e-3}}],
+                                     "frequency_hz": [0.1, 0.2, 8e5], "fit": {"damping_ratio": 5}})");
+  std::vector<std::string> warnings;
+  const JsonNode root(json, "m.json", warnings);
+  const JsonNode mode = root.at("modes").at(std::size_t{0});
+  EXPECT_EQ(mode.at("frequency_hz").number(), 0.7);
+  EXPECT_EQ(mode.at("std").at("frequency_hz").number(), 1e-3);
+  EXPECT_EQ(root.at("frequency_hz").numbers().size(), 3);
+  ASSERT_EQ(warnings.size(), 2u) << "what is not read is not compared";
+  EXPECT_EQ(warnings[0],
+            "Warning: m.json: modes[1].frequency_hz = 0.7 Hz; is unusual: 1 to 30000 Hz is usual. Is it in kHz?");
+  EXPECT_NE(warnings[1].find("m.json: frequency_hz = 800000 Hz"), std::string::npos) << warnings[1];
 }
 
 TEST(UsualRanges, TakeMassAndFrequencyOfAModeTogether) {

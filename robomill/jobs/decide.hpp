@@ -123,7 +123,7 @@ struct DecideResult {
   std::optional<Compensation> compensation = {};      ///< of its path, where that was asked for and keeps every limit
   std::size_t speeds_changed = 0, feeds_changed = 0;  ///< changes of S and F along the program
   std::string collision = {};       ///< of the program as it is, where its way comes too near to something
-  bool collisions_checked = false;  ///< of the whole way, by the cell's [geometry]
+  bool collisions_checked = false;  ///< from block end to block end, by the cell's [geometry]
   long long evaluations = 0;        ///< cuts looked at
   int exact_runs = 0;               ///< of the whole program, as it was chosen
   double seconds = 0.0;

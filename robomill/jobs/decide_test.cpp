@@ -121,6 +121,37 @@ TEST_F(Decide, TheProgramThatIsWrittenIsTheOneThatWasJudged) {
   }
 }
 
+// The head of the program says what was looked at, and no more.
+TEST_F(Decide, TheHeadOfTheProgramSaysWhatWasChecked) {
+  folder_.file("modes.json", modal::modes_json(modes()));
+  const auto head = [&](const std::string& more) {
+    std::string cell = io::read_file(folder_.at("cell.toml"));
+    cell.insert(cell.find("[workpiece]"),
+                "joint_max_velocity = [2.1, 2.0, 1.9, 3.1, 3.0, 3.8]\njoint_max_acceleration = [3, 3, 3, 8, 8, 10]\n"
+                "joint_max_jerk = [60, 60, 60, 200, 200, 250]\n");
+    folder_.file("checked.toml", cell + more +
+                                     "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\n"
+                                     "holder = [{ length_mm = 20, diameter_mm = 30 }]\n"
+                                     "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n");
+    const PlanResult plan =
+        run_job(folder_.file("job.toml",
+                             "[job]\nforces = \"forces.toml\"\ncell = \"checked.toml\"\nprogram = \"part.ngc\"\n"
+                             "modes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n"),
+                1);
+    if (!plan.program_out) return std::string("no program");
+    return plan.program_out->text.substr(0, 2000);
+  };
+  const std::string ends = head("");
+  EXPECT_NE(ends.find("from block end to block end with every joint running evenly, no trajectory"), std::string::npos)
+      << ends;
+  const std::string way = head(
+      "\n[smoothing]\ntip_tolerance_mm = 0.02\naxis_tolerance_deg = 0.1\nmax_velocity_mm_per_s = 50\n"
+      "max_acceleration_mm_per_s2 = 500\nmax_jerk_mm_per_s3 = 10000\nmax_angular_velocity_deg_per_s = 60\n"
+      "max_angular_acceleration_deg_per_s2 = 600\nmax_angular_jerk_deg_per_s3 = 12000\n");
+  EXPECT_NE(way.find("The whole trajectory was checked against the cell's geometry: clear"), std::string::npos) << way;
+  EXPECT_EQ(way.find("block end"), std::string::npos) << way;
+}
+
 // Independent of every stability chart: the cut in time, tooth by tooth.
 TEST_F(Decide, BlocksAreStableInTime) {
   const DynamicsAt dynamics = constant_dynamics(modes());

@@ -21,7 +21,7 @@ LobesFile cut_of_modes(const std::filesystem::path& path) {
 ExplainResult run_explain(const ExplainJob& job) {
   ExplainResult result;
   result.teeth = job.peaks.teeth;
-  const modal::ModalModel tool = modal::read_modes(job.modes);
+  const modal::ModalModel tool = modal::read_modes(job.modes, result.notes);
   if (!job.lobes.empty()) result.cut = cut_of_modes(job.lobes);
   const modal::ModalModel workpiece = result.cut ? result.cut->problem.workpiece_dynamics : modal::ModalModel{};
   result.peaks = stability::explain(job.peaks, tool, job.options, workpiece);

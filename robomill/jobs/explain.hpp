@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
@@ -23,6 +25,7 @@ struct ExplainJob {
 struct ExplainResult {
   stability::PeakClassification peaks;
   int teeth = 0;                                              ///< of the cutter, as the job has them
+  std::vector<std::string> notes = {};                        ///< on the modes, for the user
   std::optional<LobesFile> cut = {};                          ///< with its dynamics
   std::optional<stability::ChatterMechanism> mechanism = {};  ///< whether the cut's chatter needs the delay
 };

@@ -30,7 +30,8 @@ ExplainJob job_of(std::vector<double> peaks_hz) {
 
 TEST(RunExplain, ReadsPeaksAndJudgesTheCutAsTheStageDoes) {
   ExplainJob job = job_of({324.99, 666.98, 991.98, 1966.95});
-  const stability::PeakClassification peaks = stability::explain(job.peaks, modal::read_modes(modes));
+  std::vector<std::string> notes;
+  const stability::PeakClassification peaks = stability::explain(job.peaks, modal::read_modes(modes, notes));
   const ExplainResult alone = run_explain(job);
   EXPECT_FALSE(alone.cut || alone.mechanism);
   job.lobes = example;

@@ -5,6 +5,7 @@ namespace robomill::jobs {
 ModesResult run_modes(const ModesJob& job, Progress& progress) {
   ModesResult out;
   out.measured = modal::read_frfs(job.frfs, job.as);
+  out.measured.notes.insert(out.measured.notes.begin(), job.notes.begin(), job.notes.end());
   modal::FitOptions options = job.options;
   if (out.measured.added_decay_per_s > 0.0) options.exponential_decay_per_s = out.measured.added_decay_per_s;
   out.fit = modal::fit_modes(out.measured.set, options, progress);

@@ -17,7 +17,8 @@ struct ModesJob {
   std::vector<std::filesystem::path> frfs;
   std::vector<std::string> as = {};  ///< their names, as modal::read_frfs takes them
   modal::FitOptions options = {};
-  bool accept_fit = false;  ///< modes that do not describe the FRFs will do
+  bool accept_fit = false;              ///< modes that do not describe the FRFs will do
+  std::vector<std::string> notes = {};  ///< on the options, for the user
 };
 
 struct ModesResult {

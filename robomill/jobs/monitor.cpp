@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/decision/finish.hpp"
 #include "robomill/io/samples.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/planned_cut.hpp"
@@ -93,12 +96,13 @@ LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Pro
   } else {
     load_dynamics(cut, progress);
     const bool nothing = cut.problem.dynamics.modes.empty() && cut.problem.measured.frfs.empty();
-    if (nothing && !file.modes.empty()) cut.problem.dynamics = modal::read_modes(file.modes);
+    if (nothing && !file.modes.empty()) cut.problem.dynamics = modal::read_modes(file.modes, cut.notes);
   }
   require_plane(cut);
   cut.validate();
   require_cut_of(file, cut);
   add_assumed(basis.assumed, assumed_of(cut, CutUse::stability));
+  std::ranges::move(io::take_warnings(cut.notes), std::back_inserter(basis.warnings));
   basis.notes.insert(basis.notes.end(), cut.notes.begin(), cut.notes.end());
   return cut;
 }
@@ -122,7 +126,12 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
     basis.vibration_depth_m = vibration_of(lobes.problem, *basis.lobes, progress);
     if (basis.modes) basis.mode_coupling = coupling_above(lobes.problem, *basis.lobes, progress);
   }
-  if (!file.modes.empty()) basis.modes = modal::read_modes(file.modes);
+  std::vector<std::string> notes = file.notes;
+  if (!file.modes.empty()) basis.modes = modal::read_modes(file.modes, notes);
+  for (std::string& warning : io::take_warnings(notes)) {
+    if (std::ranges::find(basis.warnings, warning) == basis.warnings.end())
+      basis.warnings.push_back(std::move(warning));
+  }
   if (basis.modes && basis.teeth == 0) {
     throw InvalidInput(InvalidInput::Parts{.where = file.path.string(),
                                            .field = "process.teeth",

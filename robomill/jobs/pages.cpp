@@ -132,8 +132,9 @@ page::Report page_of(const LobesJobResult& result) {
 page::Report page_of(const ExplainResult& result) {
   page::Report page = titled("Peaks of a cut", summary(result));
   page.explanation = stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
+  page.notes = result.notes;
   if (!result.cut) return page;
-  page.notes = result.cut->notes;
+  add_texts(page.notes, result.cut->notes);
   page.assumed = assumed_of(*result.cut, CutUse::stability);
   return page;
 }
@@ -158,6 +159,7 @@ page::Report page_of(const ForcesResult& result) {
 page::Report page_of(const CoefficientsResult& result) {
   page::Report page = titled("Cutting force coefficients", summary(result));
   page.coefficients = cutting::slot_fit_json(result.fit, result.file, result.assumed);
+  page.notes = result.file.notes;
   page.assumed = result.assumed;
   return page;
 }

@@ -32,7 +32,25 @@ bool turns(const DecideResult& decision) {
   return std::ranges::any_of(decision.gamma_offset_rad, [](double turn) { return turn != 0.0; });
 }
 
-std::vector<std::string> header_of(const PlanResult& result) {
+/// What of a decided program was looked at for collisions.
+enum class Checked { block_ends, trajectory };
+
+std::string checked_text(const PlanResult& result, Checked checked) {
+  const bool smoothed = checked == Checked::trajectory;
+  if (smoothed && result.path->smoothed.clearance) {
+    const path::PathClearance& way = *result.path->smoothed.clearance;
+    return fmt::format("The whole trajectory was checked against the cell's geometry: {}{}", path::clearance_text(way),
+                       way.covers_moves() ? "" : ". That is too far to exclude a collision between them");
+  }
+  if (!smoothed && result.decision->collisions_checked) {
+    return "Checked against the cell's geometry was the way from block end to block end with every joint running "
+           "evenly, "
+           "no trajectory";
+  }
+  return "Nothing was checked for collisions: the cell has no [geometry]";
+}
+
+std::vector<std::string> header_of(const PlanResult& result, Checked checked) {
   const DecideResult& decision = *result.decision;
   std::vector<std::string> out = {
       fmt::format("Spindle speeds and feeds by robomill {}, from {}", ROBOMILL_VERSION,
@@ -49,9 +67,7 @@ std::vector<std::string> header_of(const PlanResult& result) {
     path += fmt::format("Finishing passes are moved by up to {:.3g} mm against the deflection that is predicted. ",
                         decision.compensation->largest_offset_m / units::mm);
   }
-  path += decision.collisions_checked ? "The way was checked against the cell's geometry"
-                                      : "Nothing was checked for collisions: the cell has no [geometry]";
-  out.push_back(std::move(path));
+  out.push_back(path + checked_text(result, checked));
   return out;
 }
 
@@ -60,10 +76,10 @@ program::ProgramReading reading_of(const PlanResult& result, const CellFile& cel
   return result.path ? result.path->reading : program_reading(cell);
 }
 
-void write_program(PlanResult& result, const CellFile& cell) {
+void write_program(PlanResult& result, const CellFile& cell, Checked checked) {
   result.program_out =
       program::rewrite_program(result.job.program, reading_of(result, cell), result.forces->program->program,
-                               *result.decision->program, header_of(result));
+                               *result.decision->program, header_of(result, checked));
   result.program_name = "program" + result.job.program.extension().string();
 }
 
@@ -254,9 +270,10 @@ void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsA
     if (result.path) withdraw(*result.path);
     return;
   }
-  write_program(result, cell);
+  write_program(result, cell, Checked::block_ends);
   if (result.path) {
     smooth_decided(result, cell, folder, progress);
+    write_program(result, cell, Checked::trajectory);  // the same lines, whose head now says what was checked
     result.decision->decided->robot_time_s = result.path->first().summary.duration_s;
   }
   const bool collides = !result.decision->collision.empty() || (result.path && !result.path->clear());

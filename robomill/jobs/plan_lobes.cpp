@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
@@ -123,6 +125,8 @@ void compare(PlanResult& result, Progress& progress) {
     const TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
     result.recordings.push_back(read_recording(cut, result.cut.problem));
+    const std::vector<std::string>& notes = result.recordings.back().notes;
+    result.notes.insert(result.notes.end(), notes.begin(), notes.end());
     const Recording& recording = result.recordings.back();
     ComparedCut& row = result.cuts[i];
     if (row.result == Verdict::unknown) {

@@ -69,11 +69,12 @@ modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, CellDyn
   out.name = fmt::format("{}: posture {} ({})", cell.path.string(), index + 1, path.filename().string());
   const Eigen::Matrix3d turn = flange_axes(cell, out.joints);
   if (!entry.modes.empty()) {
-    out.modes = modal::read_modes(entry.modes);
+    out.modes = modal::read_modes(entry.modes, told.notes);
     if (entry.flange_axes) out.modes = turned(*out.modes, turn, out.name);
     return out;
   }
   modal::FrfFile file = modal::read_frfs({entry.frf});
+  std::ranges::move(io::take_warnings(file.notes), std::back_inserter(told.warnings));
   for (const std::string& note : file.notes) told.notes.push_back(fmt::format("Posture {}: {}", index + 1, note));
   add_assumed(told.assumed, file.assumed);
   if (file.added_decay_per_s > 0.0) {

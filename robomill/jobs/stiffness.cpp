@@ -38,6 +38,7 @@ StiffnessResult run_stiffness(const StiffnessJob& job) {
   out.cell = read_cell(job.cell);
   const robot::Cell& cell = out.cell.cell;
   out.loads = robot::read_loads(job.loads, cell.arm);
+  out.cell.notes.insert(out.cell.notes.end(), out.loads.notes.begin(), out.loads.notes.end());
   const Eigen::Isometry3d mount = out.cell.mount();
   const Eigen::Vector3d point_m = job.point_m.value_or(mount * robot::tip_point(cell));
   out.found = robot::identify_joint_stiffness(cell.arm, mount.inverse() * point_m, out.loads);

@@ -269,6 +269,7 @@ std::string summary(const ExplainResult& result) {
       io::append(out, "No peak is chatter of a known mode.\n");
       break;
   }
+  add_notes(out, result.notes, "Note: ");
   if (!result.mechanism) {
     io::append(out, "Whether it is regenerative depends on the cut: give --lobes and --at.\n");
     return out;
@@ -320,6 +321,7 @@ std::string summary(const CoefficientsResult& result) {
                              group.radial.cutting_deviation_n_per_m2 / units::n_per_mm2));
     }
   }
+  add_notes(out, result.file.notes, "Note: ");
   add_notes(out, fit.notes, "");
   return out + assumed_text(result.assumed);
 }

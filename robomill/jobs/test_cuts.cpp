@@ -212,6 +212,7 @@ Recording read_recording(const TestCut& cut, const stability::LobesProblem& prob
 
   Recording out;
   out.file = cut.file.filename().string();
+  out.notes = recorded.notes;
   out.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   out.teeth = problem.milling.tool.teeth;
   out.axial_depth_m = cut.axial_depth_m;

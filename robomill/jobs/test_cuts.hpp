@@ -50,8 +50,9 @@ struct Recording {
   Eigen::VectorXd frequency_hz = {};  ///< length n, increasing
   Eigen::VectorXd amplitude = {};     ///< length n, >= 0 [m/s^2]
   std::vector<Peak> peaks = {};
-  Verdict verdict = Verdict::unknown;  ///< what the spectrum says
-  std::string reason = {};             ///< why
+  Verdict verdict = Verdict::unknown;   ///< what the spectrum says
+  std::string reason = {};              ///< why
+  std::vector<std::string> notes = {};  ///< on the record, for the user
 };
 
 /// What the peaks in the spectrum of a cut are, as stability::explain reads them, without their amplitudes.

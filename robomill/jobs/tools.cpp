@@ -130,7 +130,7 @@ std::vector<ToolResult> try_tools(const coupling::AssemblyFile& assembly,
 ToolsResult run_tools(const ToolsJob& job, Progress& progress) {
   ToolsResult out;
   out.assembly = coupling::read_assembly(job.assembly);
-  const auto tools = coupling::read_tools(job.tools, out.assembly.assembly.tool.front());
+  const auto tools = coupling::read_tools(job.tools, out.assembly.assembly.tool.front(), out.assembly.notes);
   if (!job.lobes.empty()) {
     out.cut = read_lobes(job.lobes);
     // Each tool brings its own dynamics; those of a workpiece stay.

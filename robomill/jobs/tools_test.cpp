@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "robomill/base/parallel.hpp"
 #include "testing/support.hpp"
@@ -23,10 +24,11 @@ coupling::AssemblyFile assembly(const test::Folder& folder) {
 }
 
 std::vector<coupling::ListedTool> tools(const test::Folder& folder, const coupling::AssemblyFile& file) {
+  std::vector<std::string> notes;
   return coupling::read_tools(folder.file("tools.csv",
                                           "tool,length_mm,diameter_mm,flutes,teeth\nshort,60,12,,4\nlong,30,12,3,\n"
                                           "long,60,12\nthin,60,1,2\nplain,80,12\n"),
-                              file.assembly.tool.front());
+                              file.assembly.tool.front(), notes);
 }
 
 LobesFile cut(const test::Folder& folder, const std::string& more = "") {

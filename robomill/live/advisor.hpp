@@ -35,8 +35,9 @@ struct AdviceBasis {
   /// Below it a mode is one of the arm, whose chatter no speed is suggested for; so is one below the lowest tooth
   /// passing that the spindle can give.
   double arm_below_hz = 100.0;
-  std::vector<std::string> notes = {};   ///< sentences for the user on what all this is from
-  std::vector<Assumption> assumed = {};  ///< of the files that all this is from
+  std::vector<std::string> notes = {};     ///< sentences for the user on what all this is from
+  std::vector<Assumption> assumed = {};    ///< of the files that all this is from
+  std::vector<std::string> warnings = {};  ///< on their numbers
   /// Of samples that no anti-alias filter is stated for: their lines may be folded. 0: a filter is stated.
   double unfiltered_sample_rate_hz = 0.0;
 };

@@ -1,10 +1,13 @@
 #include "robomill/modal/fit.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <string>
 
 #include "testing/modal/fit_cases.hpp"
@@ -52,6 +55,32 @@ TEST(HybridFit, FindsTheRobotsModesInCleanFrfs) {
   EXPECT_TRUE(warns_of(result, "Im H_yy > 0 on 46 %"));
   EXPECT_TRUE(warns_of(result, "not reciprocal"));
   EXPECT_TRUE(warns_of(result, "2 Re Σ R Lᵀ"));
+}
+
+// What a file's digits leave of an FRF without noise is no mode.
+TEST(HybridFit, FindsNoModeInTheRoundingOfAFile) {
+  struct Spring {
+    double frequency_hz, damping_ratio, mass_kg;
+  };
+  for (int digits = 6; digits <= 12; ++digits) {
+    const auto rounded = [&](double value) { return std::stod(fmt::format("{:.{}g}", value, digits)); };
+    Frf frf{.name = parse_frf_name("xx"), .receptance = Eigen::VectorXcd::Zero(2000)};
+    FrfSet set{.frequency_hz = Eigen::VectorXd::LinSpaced(2000, 1.0, 2000.0), .frfs = {}};
+    for (Index i = 0; i < 2000; ++i) {
+      const double omega = 2.0 * std::numbers::pi * set.frequency_hz(i);
+      Complex h = 0.0;
+      for (const Spring& spring :
+           {Spring{85, 0.03, 40}, Spring{310, 0.025, 3}, Spring{720, 0.02, 0.5}, Spring{1450, 0.015, 0.2}}) {
+        const double own = 2.0 * std::numbers::pi * spring.frequency_hz;
+        h += 1.0 / spring.mass_kg / Complex(own * own - omega * omega, 2.0 * spring.damping_ratio * own * omega);
+      }
+      frf.receptance(i) = {rounded(h.real()), rounded(h.imag())};
+    }
+    set.frfs.push_back(frf);
+    const FitResult result = fit_modes(set, {});
+    ASSERT_EQ(result.model.modes.size(), 4U) << digits << " digits";
+    EXPECT_NEAR(result.model.modes[2].damping_ratio, 0.02, 1e-6) << digits << " digits";
+  }
 }
 
 // Noise of 2 % of every value. The information bound is 0.11 % of modes 4 and 5's frequencies and 1.1 % of their

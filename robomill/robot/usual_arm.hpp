@@ -24,7 +24,7 @@ namespace robomill::robot {
 [[nodiscard]] ROBOMILL_API std::vector<std::string> unusual_masses(const Arm& arm);
 
 /// What is unusual about measured displacements: that they go against their loads, or how stiff the arm would be at the
-/// point. Makers' arms have 0.1 to 10 N/µm there; 0.02 to 50 N/µm passes.
+/// point. By estimate arms have 0.1 to 10 N/µm there; 0.02 to 50 N/µm passes.
 [[nodiscard]] ROBOMILL_API std::vector<std::string> unusual_displacements(const std::vector<Load>& loads);
 
 }  // namespace robomill::robot

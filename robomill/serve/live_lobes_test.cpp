@@ -211,7 +211,8 @@ TEST(LiveLobes, GivesTheLimitAtEachPoint) {
 
 TEST(LiveLobes, DrawsBoundaryAndBandOfAChart) {
   const test::Folder folder;
-  modal::ModalModel model = modal::read_modes(ROBOMILL_SOURCE_DIR "/data/robot-modes.toml");
+  std::vector<std::string> notes;
+  modal::ModalModel model = modal::read_modes(ROBOMILL_SOURCE_DIR "/data/robot-modes.toml", notes);
   for (modal::Mode& mode : model.modes) {
     mode.frequency_std_hz = 0.01 * mode.frequency_hz;
     mode.damping_ratio_std = 0.1 * mode.damping_ratio;

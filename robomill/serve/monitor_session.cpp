@@ -120,6 +120,9 @@ void MonitorSession::receive(const std::stop_token& stop) {
   {
     const std::lock_guard lock(mutex_);
     teeth_ = basis.teeth;
+    assumed_ = basis.assumed;
+    warnings_ = basis.warnings;
+    for (std::string& warning : warnings_) warning = client_text(warning, options_.root);
   }
   const live::Advisor advisor(std::move(basis));
   live::Session session(file, {.live = is_stream_}, outputs(advisor));
@@ -317,6 +320,8 @@ Json MonitorSession::all() const {
   std::deque<MonitorFrame> frames;
   {
     const std::lock_guard lock(mutex_);
+    out["assumed"] = io::assumed_json(assumed_);
+    out["warnings"] = warnings_;
     out["alarms"] = history_.rows();
     frames = frames_.frames();
   }

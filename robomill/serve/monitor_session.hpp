@@ -9,7 +9,9 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/session.hpp"
@@ -50,7 +52,8 @@ class MonitorSession {
   [[nodiscard]] bool over() const;
   /// What it is, how it stands, and the last frame without its spectrum.
   [[nodiscard]] io::Json summary() const;
-  /// Also the history of alarms, the edges of the bands, and the frames of the last ten minutes.
+  /// Also what was assumed, what its files are warned of, the history of alarms, the edges of the bands, and the frames
+  /// of the last ten minutes.
   [[nodiscard]] io::Json all() const;
 
  private:
@@ -95,6 +98,8 @@ class MonitorSession {
   io::Json counts_;                              ///< … and what they were at its end
   double ended_s_ = NAN;
   int teeth_ = 0;
+  std::vector<Assumption> assumed_ = {};
+  std::vector<std::string> warnings_ = {};  ///< on what its files say
   FrameRing frames_;
   MonitorHistory history_;
   std::jthread thread_;

@@ -198,6 +198,20 @@ TEST_F(MonitorSessionsTest, SaysThatTheLastAlarmIsOver) {
   EXPECT_EQ(row, all["alarms"][0]);
 }
 
+TEST_F(MonitorSessionsTest, SaysWhatItAssumedAndWhatIsUnusual) {
+  io::write_wav(place_.at("cut.wav"), cut(1.0, 9.0, 9.0), 1, rate_hz);
+  place_.file("monitor.toml",
+              "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\n"
+              "spindle_speed_rpm = 3000  # sample 3000: of the cut\nteeth = 2\n"
+              "[detector]\nfalse_alarms_per_hour = 1000\n");
+  const json all = wait_for_end(start("cut.wav", 50.0), "done");
+  ASSERT_EQ(all["assumed"].size(), 1U) << all["assumed"];
+  EXPECT_EQ(all["assumed"][0]["key"], "process.spindle_speed_rpm");
+  ASSERT_EQ(all["warnings"].size(), 1U) << all["warnings"];
+  const std::string warning = all["warnings"][0];
+  EXPECT_TRUE(warning.starts_with("monitor.toml:8: detector.false_alarms_per_hour = 1000 ")) << warning;
+}
+
 TEST_F(MonitorSessionsTest, SendsAtMostTenFramesASecond) {
   io::write_wav(place_.at("cut.wav"), cut(60.0, 100.0, 100.0), 1, rate_hz);
   const json all = wait_for_end(start("cut.wav", 50.0), "done");

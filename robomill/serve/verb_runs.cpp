@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/joint_fit.hpp"
@@ -67,7 +69,8 @@ JobOutcome run_frf(const VerbJob& job, Progress& progress) {
 
 JobOutcome run_modes(const VerbJob& job, Progress& progress) {
   modal::FitOptions options;
-  if (job.has("config")) options = modal::read_fit_options(job.file("config"));
+  std::vector<std::string> notes;
+  if (job.has("config")) options = modal::read_fit_options(job.file("config"), notes);
   options.seed = job.seed();
   options.method = job.word("method", modal::fit_method_names).value_or(options.method);
   if (const std::vector<double> band = job.numbers("band_hz"); !band.empty()) {
@@ -75,10 +78,12 @@ JobOutcome run_modes(const VerbJob& job, Progress& progress) {
     options.band_high_hz = band[1];
   }
   options.modes = job.get("modes", options.modes);
-  return finished(
-      job, jobs::run_modes(
-               {.frfs = job.inputs(), .as = job.texts("as"), .options = options, .accept_fit = job.flag("accept_fit")},
-               progress));
+  return finished(job, jobs::run_modes({.frfs = job.inputs(),
+                                        .as = job.texts("as"),
+                                        .options = options,
+                                        .accept_fit = job.flag("accept_fit"),
+                                        .notes = notes},
+                                       progress));
 }
 
 JobOutcome run_posture_modes(const VerbJob& job, Progress& progress) {

@@ -328,9 +328,8 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   read_holder(file, out);
   read_search(file, out.search);
   add_defaults(file, reading, out);
-  file.done();
+  std::ranges::move(file.done(), std::back_inserter(out.notes));
   add_assumed(out.assumed, io::sample_values(source));
-  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   if (!reading.joint_sought) choose_lines(file, lines, out);
   about(file, out.receptances.empty() ? source.path : out.receptances, [&] { out.assembly.validate(); });
   return out;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::coupling {
 namespace {
@@ -89,9 +92,10 @@ std::string joint_csv(const JointFitResult& result) {
 
 JointFile read_joint_json(const std::filesystem::path& path) {
   const io::Json json = io::read_json(path);
-  const io::JsonNode root(json, path.string());
-  const io::JsonNode values = root.at("joint");
   JointFile out;
+  std::vector<std::string> unusual;
+  const io::JsonNode root(json, path.string(), unusual);
+  const io::JsonNode values = root.at("joint");
   for (const io::Field<Joint>& field : joint_fields) {
     out.joint.*field.value = field.factor * values.at(field.key).number();
   }
@@ -102,6 +106,7 @@ JointFile read_joint_json(const std::filesystem::path& path) {
     parts.where = path.string();
     throw InvalidInput(std::move(parts));
   }
+  out.warnings = io::take_warnings(unusual);
   const std::string name = path.filename().string();
   out.notes.push_back(
       fmt::format("The joint is that of {}, in place of the assembly's: {}.", name, values_text(out.joint)));

@@ -131,12 +131,12 @@ TEST(JointJson, WarnsOfWhatTheFrfDidNotShow) {
   result.status = JointFitResult::Status::not_converged;
   EXPECT_EQ(warnings(result).size(), 2U);
   // Written by hand: the four alone.
-  const std::string values = R"({"joint": {"translational_stiffness_n_per_m": 1, "translational_damping_n_s_per_m": 0,
-                 "rotational_stiffness_n_m_per_rad": 2, "rotational_damping_n_m_s_per_rad": 0}})";
+  const std::string values = R"({"joint": {"translational_stiffness_n_per_m": 1e7, "translational_damping_n_s_per_m": 0,
+                 "rotational_stiffness_n_m_per_rad": 2e4, "rotational_damping_n_m_s_per_rad": 0}})";
   const JointFile by_hand = read_joint_json(folder.file("joint.json", values));
   EXPECT_TRUE(by_hand.warnings.empty());
   ASSERT_EQ(by_hand.notes.size(), 1U);
-  EXPECT_NE(by_hand.notes[0].find("joint.json, in place of the assembly's: 1 N/m with 0 N"), std::string::npos);
+  EXPECT_NE(by_hand.notes[0].find("joint.json, in place of the assembly's: 1e+07 N/m with 0 N"), std::string::npos);
 }
 
 // The table may hold what the search does not find, and lack what it does.

@@ -99,8 +99,9 @@ Segment read_segment(const TableRow& row, const Segment& like) {
 
 }  // namespace
 
-std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like) {
-  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
+std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like,
+                                   std::vector<std::string>& notes) {
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string(), notes);
   check_columns(table);
   std::vector<ListedTool> out;
   std::set<std::string, std::less<>> seen;

@@ -24,7 +24,9 @@ struct ListedTool {
 /// youngs_modulus_gpa, density_kg_per_m3, poissons_ratio, loss_factor, beam, teeth.
 /// @param like  what says the material, beam and flute ratio where their column is missing or empty; bore, flutes and
 ///     mass belong to one segment alone and are then 0
+/// @param notes  gains sentences for the user
 /// @throws InvalidInput with file, line, column and value
-[[nodiscard]] ROBOMILL_API std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like);
+[[nodiscard]] ROBOMILL_API std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like,
+                                                              std::vector<std::string>& notes);
 
 }  // namespace robomill::coupling

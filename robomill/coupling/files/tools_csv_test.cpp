@@ -3,12 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
 namespace tools_csv_test {
+
+std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like) {
+  std::vector<std::string> notes;
+  return coupling::read_tools(path, like, notes);
+}
 
 Segment carbide() {
   return {.length_m = 0.03,

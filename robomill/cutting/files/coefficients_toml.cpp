@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -262,7 +263,7 @@ CoefficientTable read_unscaled(io::TomlFile& file, const CutAtHand& cut) {
   if (cutting != nullptr || edge != nullptr || measured) {
     throw file.reject("coefficients.file", "must not stand beside coefficients of its own");
   }
-  k = read_coefficients(other);
+  k = read_coefficients(other, out.notes);
   return out;
 }
 
@@ -356,13 +357,14 @@ CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut
   return out;
 }
 
-MillingCoefficients read_coefficients(const io::TomlSource& source) {
+MillingCoefficients read_coefficients(const io::TomlSource& source, std::vector<std::string>& notes) {
   io::TomlFile file(source);
   if (file.has("coefficients.file")) throw file.reject("coefficients.file", "must not name a further file");
-  MillingCoefficients out = read_coefficient_table(file).coefficients;
+  CoefficientTable out = read_coefficient_table(file);
   for (const char* reported : {"identification", "source"}) file.skip(reported);
-  file.done();
-  return out;
+  std::ranges::move(out.notes, std::back_inserter(notes));
+  std::ranges::move(file.done(), std::back_inserter(notes));
+  return out.coefficients;
 }
 
 std::string coefficients_toml(const MillingCoefficients& coefficients) {

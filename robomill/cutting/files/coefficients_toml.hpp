@@ -54,8 +54,10 @@ struct ROBOMILL_API CoefficientTable {
 /// Whether `coefficients` is a name, and not a table.
 [[nodiscard]] ROBOMILL_API bool names_a_material(const io::TomlFile& file);
 
-/// coefficients.toml. @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const io::TomlSource& source);
+/// coefficients.toml. @param notes  gains sentences for the user
+/// @throws InvalidInput with file, line, key and value
+[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const io::TomlSource& source,
+                                                                 std::vector<std::string>& notes);
 
 /// The table as text, for coefficients.toml.
 [[nodiscard]] ROBOMILL_API std::string coefficients_toml(const MillingCoefficients& coefficients);

@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,8 +11,10 @@
 
 namespace robomill::cutting {
 
-/// A file as data/materials.toml. @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API std::vector<Material> read_materials(const io::TomlSource& source);
+/// A file as data/materials.toml. @param notes  gains sentences for the user
+/// @throws InvalidInput with file, line, key and value
+[[nodiscard]] ROBOMILL_API std::vector<Material> read_materials(const io::TomlSource& source,
+                                                                std::vector<std::string>& notes);
 
 /// Those of data/materials.toml, which the library carries with it, in its order.
 [[nodiscard]] ROBOMILL_API const std::vector<Material>& materials();

@@ -128,7 +128,10 @@ TEST(MaterialsToml, RejectsInTheFilesWords) {
   const std::string good =
       "[materials.foam]\ndescription = \"foam\"\n[[materials.foam.coefficients]]\ncutter = \"any\"\n"
       "tangential_n_per_mm2 = 5\nsource = \"Someone\"\n";
-  const auto read = [](const std::string& text) { return read_materials(io::TomlSource("m.toml", text)); };
+  const auto read = [](const std::string& text) {
+    std::vector<std::string> notes;
+    return read_materials(io::TomlSource("m.toml", text), notes);
+  };
   ASSERT_EQ(read(good).size(), 1U);
   EXPECT_DOUBLE_EQ(read(good).front().coefficients.front().line.tangential_n_per_m2.front(), 5e6);
   const auto expect = [&](const std::string& text, const std::string& words) {

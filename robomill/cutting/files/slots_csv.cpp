@@ -165,9 +165,9 @@ std::string inline_toml(const io::Json& json) {
 }  // namespace
 
 SlotsFile read_slots(const std::filesystem::path& path) {
-  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
-  check_columns(table);
   SlotsFile out;
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string(), out.notes);
+  check_columns(table);
   out.slots.reserve(table.rows.size());
   out.lines.reserve(table.rows.size());
   for (const io::TextTable::Row& row : table.rows) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
@@ -14,6 +15,11 @@
 
 namespace robomill::cutting {
 namespace slots_csv_test {
+
+MillingCoefficients read_coefficients(const io::TomlSource& source) {
+  std::vector<std::string> notes;
+  return cutting::read_coefficients(source, notes);
+}
 
 const std::string head = "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n";
 

@@ -226,9 +226,8 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
     read_postures(file, out);
     out.geometry = robot::read_geometry(file, out.cell, out.mount(), link_frames, out.notes);
   }
-  file.done();
+  std::ranges::move(file.done(), std::back_inserter(out.notes));
   add_assumed(out.assumed, io::sample_values(source));
-  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
   for (const std::string& text : robot::unusual_masses(out.cell.arm))
     out.notes.push_back(fmt::format("{}{}: {}", io::warning_label, out.path.string(), text));
   if (out.hybrid) {

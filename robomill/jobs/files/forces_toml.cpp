@@ -206,7 +206,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     read_structure(file, table, modes, frf, model);
     if (table == "dynamics") said = read_missing_directions(file, table, model);
     if (!frf.empty()) throw file.reject(table + ".frf", "must be modes here", "Fit them: robomill modes");
-    if (!modes.empty()) model = modal::read_modes(modes);
+    if (!modes.empty()) model = modal::read_modes(modes, out.notes);
   };
   structure("dynamics", out.dynamics);
   modal::FrfSet none;
@@ -214,8 +214,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     out.assumed.push_back(*assumed);
   }
   structure("workpiece_dynamics", out.workpiece_dynamics);
-  file.done();
-  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
+  std::ranges::move(file.done(), std::back_inserter(out.notes));
   return out;
 }
 

@@ -1,11 +1,18 @@
 #include "robomill/jobs/files/job_toml.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/records.hpp"
+#include "robomill/io/si.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/files/decide_toml.hpp"
 
@@ -164,17 +171,26 @@ Job read_job(const io::TomlSource& source) {
       only_cuts.validate();
       job.cuts.insert(job.cuts.end(), only_cuts.cuts.begin(), only_cuts.cuts.end());
     });
-    cuts.done();
+    job.notes = cuts.done();
   }
-  file.done();
-  job.notes = file.unusual();
+  std::ranges::move(file.done(), std::back_inserter(job.notes));
   file.locate([&] { job.validate(); });
   return job;
 }
 
 CutSignal read_cut_signal(const TestCut& cut) {
   const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
-  CutSignal out = {record.column(cut.column), record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz};
+  const std::size_t place = record.place(cut.column);
+  CutSignal out = {.acceleration = record.columns[place], .notes = record.notes};
+  const std::string unit = record.unit(place);
+  const io::SiFactor si = io::parse_unit(unit);
+  if (si.quantity == io::Quantity::acceleration && !si.is_ratio) {
+    out.acceleration *= si.factor;
+  } else if (io::is_unit(unit) && unit != "-") {
+    out.notes.push_back(fmt::format("{}{}: column {} is in {}, and is read in m/s².", io::warning_label,
+                                    cut.file.string(), cut.column, unit));
+  }
+  out.sample_rate_hz = io::rate_of(record, cut.sample_rate_hz, "sample_rate_hz", out.notes);
   if (out.sample_rate_hz > 0.0) return out;
   throw InvalidInput(cut.file.string(), "has no time column", "Give sample_rate_hz beside the file in [[cuts]]");
 }

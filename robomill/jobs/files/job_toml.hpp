@@ -79,8 +79,9 @@ struct Job {
 
 /// What was recorded of a test cut.
 struct CutSignal {
-  Eigen::VectorXd acceleration;  ///< length n [m/s^2]
-  double sample_rate_hz = 0.0;   ///< > 0
+  Eigen::VectorXd acceleration;         ///< length n [m/s^2]
+  double sample_rate_hz = 0.0;          ///< > 0
+  std::vector<std::string> notes = {};  ///< sentences for the user
 };
 /// Reads the recording that a test cut names.
 /// @throws InvalidInput if it cannot be read, or neither it nor the cut knows its rate

@@ -54,8 +54,10 @@ void load_posture(LobesFile& file, Progress& progress) {
 
 void load_dynamics(LobesFile& file, Progress& progress) {
   if (!file.cell.empty()) load_posture(file, progress);
-  if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes);
-  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes);
+  if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes, file.notes);
+  if (!file.workpiece_modes.empty()) {
+    file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes, file.notes);
+  }
   const auto measured = [&file](const std::filesystem::path& path) {
     modal::FrfFile frfs = modal::read_frfs({path});
     file.notes.insert(file.notes.end(), frfs.notes.begin(), frfs.notes.end());

@@ -393,8 +393,7 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
     if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
     out.surface_grid = {grid[0], grid[1]};
   }
-  file.done();
-  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
+  std::ranges::move(file.done(), std::back_inserter(out.notes));
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/toml_edit.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -93,7 +94,9 @@ void take_plan(LobesFile& cut, const PlanResult& structure) {
   const double high = spindle[1] > 0.0 ? spindle[1] : range[1];
   if (high > low) range = {low, high};
   add_assumed(cut.assumed, structure.assumed);
-  cut.notes.insert(cut.notes.end(), structure.warnings.begin(), structure.warnings.end());
+  for (const std::string& text : structure.warnings) {
+    cut.notes.push_back(fmt::format("{}{}", io::warning_label, text));
+  }
   cut.notes.push_back(
       fmt::format("The structure and the range of speeds are those of {}.", structure.job.file.filename().string()));
 }

@@ -1,11 +1,14 @@
 #include "robomill/modal/files/fit_toml.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "robomill/base/error.hpp"
 #include "robomill/io/toml_file.hpp"
 
 namespace robomill::modal {
 
-FitOptions read_fit_options(const io::TomlSource& source) {
+FitOptions read_fit_options(const io::TomlSource& source, std::vector<std::string>& notes) {
   io::TomlFile file(source);
   FitOptions o;
   file.choice("fit.method", fit_method_names, o.method);
@@ -40,7 +43,7 @@ FitOptions read_fit_options(const io::TomlSource& source) {
   number("stable_mac", o.stable_mac);
   number("pso_frequency_half_width", o.pso_frequency_half_width);
   number("pso_max_damping_ratio", o.pso_max_damping_ratio);
-  file.done();
+  std::ranges::move(file.done(), std::back_inserter(notes));
   file.locate([&] { o.validate(); });
   return o;
 }

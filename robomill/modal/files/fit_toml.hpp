@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/io/toml_source.hpp"
@@ -9,7 +11,8 @@
 namespace robomill::modal {
 
 /// Reads how modes are to be fitted: the table [fit], whose keys are the members of FitOptions; band_hz = [low, high].
+/// @param notes  gains sentences for the user
 /// @throws InvalidInput with file, line and key
-[[nodiscard]] ROBOMILL_API FitOptions read_fit_options(const io::TomlSource& source);
+[[nodiscard]] ROBOMILL_API FitOptions read_fit_options(const io::TomlSource& source, std::vector<std::string>& notes);
 
 }  // namespace robomill::modal

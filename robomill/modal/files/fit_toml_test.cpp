@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "testing/support.hpp"
 
 namespace robomill::modal {
 namespace fit_toml_test {
+
+FitOptions read_fit_options(const io::TomlSource& source) {
+  std::vector<std::string> notes;
+  return modal::read_fit_options(source, notes);
+}
 
 TEST(FitToml, ReadsMethodBandAndNumbers) {
   const test::Folder folder;

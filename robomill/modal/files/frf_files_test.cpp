@@ -307,6 +307,24 @@ TEST(FrfFiles, ColumnsKeepTheirUnits) {
   EXPECT_NE(say("xx_re,xx_im\n1,2\n").find("frequency_hz"), std::string::npos);
 }
 
+// A row of units below the names says what the names could.
+TEST(FrfFiles, ARowOfUnitsCounts) {
+  const test::Folder folder;
+  const auto read = [&](const std::string& text) { return read_frfs({folder.file("a.csv", text)}); };
+  const std::complex<double> value(2e-6, -3e-6);
+  const auto off = [&](const FrfFile& file) { return std::abs(file.set.frfs[0].receptance(0) - value); };
+  const FrfFile words = read("Frequency,Real,Imag\nkHz,um/N,um/N\n0.1,2,-3\n0.2,2,-3\n");
+  EXPECT_LT(off(words), 1e-18);
+  EXPECT_DOUBLE_EQ(words.set.frequency_hz(0), 100.0);
+  const FrfFile names = read("frequency_hz,xx_re,xx_im,xx_coherence\n(Hz),(µm/N),(µm/N),(-)\n100,2,-3,1\n200,2,-3,1\n");
+  EXPECT_LT(off(names), 1e-18);
+  EXPECT_TRUE(names.assumed.empty()) << "the unit is stated";
+  EXPECT_NE(test::rejection([&] {
+              static_cast<void>(read("Frequency,Real,Imag\nmm,m/N,m/N\n100,2,-3\n"));
+            }).find("has its first column in mm, which is no frequency"),
+            std::string::npos);
+}
+
 TEST(FrfFiles, OneNumberedPointIsTheTip) {
   const test::Folder folder;
   FrfSet set;

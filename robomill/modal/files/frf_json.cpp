@@ -57,8 +57,9 @@ Eigen::VectorXd optional_numbers(const io::JsonNode& root, const char* key, cons
 
 FrfParts read_frf_json(const std::filesystem::path& path) {
   const io::Json json = io::read_json(path);
-  const io::JsonNode root(json, path.string());
-  FrfParts out{.file = path, .frequency_hz = root.at("frequency_hz").numbers()};
+  FrfParts out{.file = path};
+  const io::JsonNode root(json, path.string(), out.notes);
+  out.frequency_hz = root.at("frequency_hz").numbers();
   const io::JsonNode receptances = root.at("receptance_m_per_n");
   receptances.require_object();
   for (const auto& item : receptances.json().items()) {

@@ -241,6 +241,40 @@ double phase_unit(const Words& phase, const std::string& where) {
                      "Name the column \"Phase (deg)\" or \"Phase (rad)\"");
 }
 
+/// Hz in one unit of the first column; nothing said is Hz.
+double hz_in(const std::string& unit, const std::string& where) {
+  if (unit == "khz") return 1e3;
+  if (unit == "rad/s") return 1.0 / units::revolution;
+  if (unit == "hz" || !io::is_unit(unit)) return 1.0;
+  throw InvalidInput(where, fmt::format("has its first column in {}, which is no frequency", unit),
+                     "The first column is the frequency in Hz");
+}
+
+/// The unit of a row as the names of columns state it: "m/s^2/N" is "m_per_s2_per_n".
+std::string as_key(std::string_view unit) {
+  std::string out;
+  for (const char letter : io::lowered(unit)) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (letter == '/') out += "_per_";
+    if (byte == 0xB2) out += '2';
+    if (byte == 0xB5 || byte == 0xBC) out += 'u';  // of the signs for micro
+    if (byte < 0x80 && std::isalnum(byte) != 0) out += letter;
+  }
+  return out;
+}
+
+/// Names with what a row of units below them says: "Real" is "Real (m/N)", "xx_re" is "xx_re_m_per_n".
+void name_units(io::Table& table) {
+  for (std::size_t i = 0; i < table.units.size(); ++i) {
+    std::string& name = table.names[i];
+    const std::string& unit = table.units[i];
+    const std::optional<Column> column = take_apart(name);
+    const bool states_one = !io::unit_of_column(name).empty() || (column && !column->unit.empty());
+    if (unit.empty() || unit == "-" || states_one) continue;
+    name += column ? "_" + as_key(unit) : " (" + unit + ")";
+  }
+}
+
 /// Three columns under a header in words, "Frequency (Hz), Magnitude (m/N), Phase (deg)"; it names no FRF.
 FrfPart read_in_words(const io::Table& table, const std::string& where) {
   using Content = Words::Content;
@@ -285,8 +319,9 @@ std::vector<FrfPart> read_unnamed(const io::Table& table, const std::string& whe
 }  // namespace
 
 FrfParts read_frf_table(const std::filesystem::path& path) {
-  const io::Table table = io::parse_table(io::read_file(path), path.string());
   FrfParts out{.file = path};
+  io::Table table = io::parse_table(io::read_file(path), path.string(), out.notes);
+  name_units(table);
   const std::string where = path.string();
   if (std::any_of(table.names.begin(), table.names.end(), is_time) &&
       std::none_of(table.names.begin(), table.names.end(), is_frequency)) {
@@ -301,6 +336,7 @@ FrfParts read_frf_table(const std::filesystem::path& path) {
     NamedColumns(table, out).read();
   } else if (table.names.empty() || table.columns.size() == 3) {
     out.frequency_hz = to_vector(table.columns[0]);
+    if (!table.names.empty()) out.frequency_hz *= hz_in(io::lowered(io::unit_of_column(table.names[0])), where);
     require_frequencies(out.frequency_hz, where);
     if (table.names.empty()) {
       out.frfs = read_unnamed(table, where);

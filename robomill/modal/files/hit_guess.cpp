@@ -41,26 +41,12 @@ bool any_begins(const std::vector<std::string>& words, std::initializer_list<std
   });
 }
 
-/// What stands in brackets at a name's end, else the unit of its last parts: "acc x [m/s²]", "ax_m_per_s2".
-std::string unit_in(const std::string& name) {
-  for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
-    const std::size_t begin = name.rfind(open), end = name.rfind(close);
-    if (begin != std::string::npos && end != std::string::npos && begin < end) {
-      return std::string(io::trimmed(std::string_view(name).substr(begin + 1, end - begin - 1)));
-    }
-  }
-  return io::unit_of_key(io::lowered(name));
-}
-
 void apply_unit(ColumnGuess& column) {
-  const std::string unit = io::lowered(column.unit);
-  if (unit == "v" || unit == "volt" || unit == "volts") column.volts = 1.0;
-  if (unit == "mv" || unit == "millivolt") column.volts = 1e-3;
-  for (const auto& [text, si] : {std::pair{"s", 1.0}, {"sec", 1.0}, {"ms", units::ms}, {"us", units::us}}) {
-    if (unit != text) continue;
+  column.volts = io::volts_in(column.unit);
+  if (const double s = io::seconds_in(column.unit); s > 0.0) {
     column.role = Role::time;
     column.from = "its unit";
-    column.si_per_unit = si;
+    column.si_per_unit = s;
   }
   const io::SiFactor si = io::parse_unit(column.unit);
   if (si.is_ratio || si.quantity == io::Quantity::unknown || column.unit.find("rad") != std::string::npos) return;
@@ -242,10 +228,11 @@ void complete_directions(const io::Record& record, HitGuess& guess) {
 
 }  // namespace
 
-ColumnGuess guess_by_name(const std::string& name, std::size_t number) {
+ColumnGuess guess_by_name(const io::Record& record, std::size_t place) {
+  const std::string name = place < record.names.size() ? record.names[place] : std::string();
   ColumnGuess out;
-  out.name = name.empty() ? std::to_string(number) : name;
-  out.unit = unit_in(name);
+  out.name = name.empty() ? std::to_string(place + 1) : name;
+  out.unit = record.unit(place);
   apply_unit(out);
   const std::vector<std::string> words = words_of(name);
   out.axis = axis_of(words);
@@ -285,7 +272,7 @@ HitGuess guess_hit(const io::Record& record) {
     const std::string name = i < record.names.size() ? record.names[i] : std::string();
     // Of columns of one name only the number tells which.
     const bool twice = !name.empty() && std::ranges::count(record.names, name) > 1;
-    guess.columns.push_back(guess_by_name(name, i + 1));
+    guess.columns.push_back(guess_by_name(record, i));
     if (twice) guess.columns.back().name = std::to_string(i + 1);
   }
   // Lines over frequency are no record of time.

@@ -15,7 +15,7 @@ namespace robomill::modal {
 struct ColumnGuess {
   enum class Role { unknown, time, force, response, other };  ///< other: a count, or a second time
   std::string name = {};  ///< as hits.toml names it: its name, or its number from 1 where it has none of its own
-  std::string unit = {};  ///< as its name says it: "V", "m/s^2"; empty where it does not
+  std::string unit = {};  ///< as its name or a row of units says it: "V", "m/s^2"; empty where they do not
   Role role = Role::unknown;
   std::string from = {};                           ///< what that is guessed from: "its name"; empty of unknown ones
   ResponseKind kind = ResponseKind::acceleration;  ///< of a response
@@ -24,8 +24,8 @@ struct ColumnGuess {
   double volts = 0;        ///< a 1 of the column; 0: no voltage
 };
 
-/// What a column's name alone says. @param number  names it where it has no name, from 1
-[[nodiscard]] ColumnGuess guess_by_name(const std::string& name, std::size_t number);
+/// What the name and unit of a record's column say. @param place  from 0
+[[nodiscard]] ColumnGuess guess_by_name(const io::Record& record, std::size_t place);
 
 /// What the record of a hammer hit seems to hold.
 struct HitGuess {

@@ -149,15 +149,16 @@ std::string column(io::TomlFile& file, const std::string& key) {
   return name;
 }
 
-double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz) {
-  if (record.sample_rate_hz <= 0.0 && given_hz <= 0.0) {
-    throw file.reject(key, "has no time column, and acquisition.sample_rate_hz is missing");
+double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz,
+               std::vector<std::string>& notes) {
+  double rate_hz = 0.0;
+  try {
+    rate_hz = io::rate_of(record, given_hz, "acquisition.sample_rate_hz", notes);
+  } catch (const InvalidInput& error) {
+    throw file.reject(key, error.parts().rule);
   }
-  if (record.sample_rate_hz > 0.0 && given_hz > 0.0 && std::abs(record.sample_rate_hz / given_hz - 1.0) > 1e-3) {
-    throw file.reject(key, fmt::format("was sampled at {:.6g} Hz, not at acquisition.sample_rate_hz = {:.6g} Hz",
-                                       record.sample_rate_hz, given_hz));
-  }
-  return record.sample_rate_hz > 0.0 ? record.sample_rate_hz : given_hz;
+  if (rate_hz > 0.0) return rate_hz;
+  throw file.reject(key, "has no time column, and acquisition.sample_rate_hz is missing");
 }
 
 HitRow read_row(io::TomlFile& file, const std::string& row) {
@@ -202,34 +203,36 @@ ReadAs response_read_as(ResponseKind kind, const Sensors& sensors) {
   return {io::Quantity::displacement, "m", in_volts, given, response_key(kind)};
 }
 
-/// The column's own name where the file has names that its reader did not convert.
-std::string name_in(const io::Record& record, const std::string& name_or_number) {
+/// Whether the file has names and units that its reader did not convert.
+bool has_own_units(const io::Record& record) {
   const io::Format format = io::format_of(record.file);
-  if (format != io::Format::csv && format != io::Format::text && format != io::Format::mat) return {};
-  for (const std::string& name : record.names) {
-    if (name == name_or_number) return name;
-  }
-  for (std::size_t i = 0; i < record.names.size(); ++i) {
-    if (std::to_string(i + 1) == name_or_number) return record.names[i];
-  }
-  return {};
+  return format == io::Format::csv || format == io::Format::text || format == io::Format::mat;
 }
 
-/// SI per number of a column whose name states its unit: ax_g, Force [kN]. 1 where the name states none.
-/// @throws InvalidInput with the key, if the name states another quantity than the file takes the column for
-double factor_of_name(const io::TomlFile& file, const std::string& key, const std::string& name, const ReadAs& as,
-                      std::vector<std::string>& notes) {
-  const ColumnGuess said = guess_by_name(name, 0);
+/// SI per number of a column whose name, or row of units, states its unit: ax_g, Force [kN]. 1 where none is stated.
+/// @throws InvalidInput with the key, if it is of another quantity than the file takes the column for
+double factor_of_unit(const io::TomlFile& file, const std::string& key, const io::Record& record, std::size_t place,
+                      const ReadAs& as, std::vector<std::string>& notes) {
+  const ColumnGuess said = guess_by_name(record, place);
+  const bool by_row = place < record.units.size() && !record.units[place].empty();
+  const std::string by = by_row ? "by the row of units" : "by its name";
   if (said.volts > 0.0) {
     if (as.in_volts) return 1.0;
-    throw file.reject(key, fmt::format("is a voltage by its name, and {} is missing", as.sensitivity),
+    throw file.reject(key, fmt::format("is a voltage {}, and {} is missing", by, as.sensitivity),
                       "It stands on the sensor's calibration sheet; rename the column if it holds " + as.unit);
   }
   const io::SiFactor si = io::parse_unit(said.unit);
-  if (si.is_ratio || si.quantity == io::Quantity::unknown) return 1.0;
-  if (si.quantity != as.quantity) {
+  if (said.unit.empty() || said.unit == "-") return 1.0;
+  // Of a name it may be a remark: "acc (front)".
+  if (!by_row && (si.is_ratio || si.quantity == io::Quantity::unknown)) {
+    if (!as.in_volts)
+      notes.push_back(fmt::format("Columns {}: \"{}\" is no unit known here, and they are read in {}.", said.name,
+                                  said.unit, as.unit));
+    return 1.0;
+  }
+  if (si.is_ratio || si.quantity != as.quantity) {
     throw file.reject(
-        key, fmt::format("is in {} by its name, and is read in {}", said.unit, as.unit),
+        key, fmt::format("is in {} {}, and is read in {}", said.unit, by, as.unit),
         as.quantity == io::Quantity::force || si.quantity == io::Quantity::force
             ? "Are the columns of force and response exchanged?"
             : "acquisition.response says what the sensor measures: acceleration, velocity or displacement");
@@ -237,14 +240,13 @@ double factor_of_name(const io::TomlFile& file, const std::string& key, const st
   if (as.in_volts) {
     if (std::abs(as.given_factor / si.factor - 1.0) < 1e-3) return 1.0;
     throw file.reject(key,
-                      fmt::format("is in {} by its name, where {} makes {:.4g} {} of a 1", said.unit, as.sensitivity,
+                      fmt::format("is in {} {}, where {} makes {:.4g} {} of a 1", said.unit, by, as.sensitivity,
                                   as.given_factor, as.unit),
                       "Leave the sensitivity out if the recorder used it already, or rename the column");
   }
   if (si.factor != 1.0) {
-    const std::string note = fmt::format("Columns {} are in {} by their name: converted with {:.6g} to {}.", name,
-                                         said.unit, si.factor, as.unit);
-    notes.push_back(note);
+    notes.push_back(fmt::format("Columns {} are in {} {}: converted with {:.6g} to {}.", said.name, said.unit,
+                                by_row ? by : "by their name", si.factor, as.unit));
   }
   return si.factor;
 }
@@ -267,17 +269,19 @@ Hit read_hit(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sen
   io::RecordOptions reading{.scale = sensors.scale};
   if (file.has(row + "time")) reading.time = column(file, row + "time");
   io::Record record = file.locate([&] { return io::read_record(path, reading); });
-  record.sample_rate_hz /= guess_by_name(name_in(record, reading.time), 0).si_per_unit;  // of times in ms
+  if (!reading.time.empty() && has_own_units(record)) {
+    record.sample_rate_hz /= guess_by_name(record, record.place(reading.time)).si_per_unit;  // of times in ms
+  }
   notes.insert(notes.end(), record.notes.begin(), record.notes.end());
 
   Hit hit;
   hit.file = path.string();
   hit.excitation = columns.excitation;
   hit.against_axis = columns.against_axis;
-  hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz);
+  hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz, notes);
   std::vector<std::string> converted;
   const auto factor = [&](const std::string& key, const std::string& column, const ReadAs& as) {
-    return factor_of_name(file, row + key, name_in(record, column), as, converted);
+    return has_own_units(record) ? factor_of_unit(file, row + key, record, record.place(column), as, converted) : 1.0;
   };
   const double force =
       factor("force", columns.force, {.in_volts = sensors.force_in_volts, .given_factor = sensors.force_factor});
@@ -344,8 +348,7 @@ HitsFile read_hits(const io::TomlSource& source) {
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i)
     out.hits.push_back(read_hit(file, i, out.options.response, sensors, out.notes));
-  file.done();
-  std::ranges::move(file.unusual(), std::back_inserter(out.notes));
+  std::ranges::move(file.done(), std::back_inserter(out.notes));
   out.assumed = assumed_of(file, out.options.response, source.path);
   add_assumed(out.assumed, io::sample_values(source));
   return out;
@@ -366,7 +369,7 @@ HitRows read_hit_rows(const io::TomlSource& source) {
     for (const char* key : {"file", "time"}) file.skip(row + key);
     out.rows.push_back(read_row(file, row));
   }
-  file.done();
+  out.notes = file.done();
   return out;
 }
 

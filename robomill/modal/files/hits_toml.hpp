@@ -47,6 +47,7 @@ struct HitRows {
   double response_factor = 1.0;  ///< SI unit of the response per 1 of a record
   double sample_rate_hz = 0.0;   ///< 0: not said
   std::vector<HitRow> rows;
+  std::vector<std::string> notes = {};  ///< sentences for the user
 };
 
 /// Reads hits.toml alone; its records need not be there.

@@ -122,6 +122,85 @@ TEST(HitsToml, RejectsColumnsWhoseNameContradictsTheFile) {
   EXPECT_NEAR(in_g.read().hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12);
 }
 
+/// hits.toml of a record with a row of units below the names.
+struct UnitsRow {
+  std::string units = "s,N,m/s^2", names = "Time,Force,Acc", acquisition = {}, rows = "0,0,1\n0.001,5,3\n0.002,0,5\n";
+
+  HitsFile read() const {
+    const test::Folder folder;
+    static_cast<void>(folder.file("a.csv", names + "\n" + units + "\n" + rows));
+    const std::string force = names.substr(names.find(',') + 1);
+    return read_hits(folder.file(
+        "hits.toml", "[acquisition]\n" + acquisition + "[[hits]]\nfile = \"a.csv\"\nforce = \"" +
+                         force.substr(0, force.find(',')) + "\"\nforce_direction = \"x\"\nresponses = { x = \"" +
+                         names.substr(names.rfind(',') + 1) + "\" }\n"));
+  }
+  std::string rejection() const {
+    return test::rejection([&] { static_cast<void>(read()); });
+  }
+};
+
+TEST(HitsToml, ConvertsColumnsWhoseRowOfUnitsSaysSo) {
+  EXPECT_TRUE(UnitsRow{}.read().notes.empty());
+  for (const char* in_g : {"s,N,g", "(s),(N),(g)", "[s],[N],[g]"}) {
+    const HitsFile file = UnitsRow{.units = in_g}.read();
+    EXPECT_NEAR(file.hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12) << in_g;
+    ASSERT_EQ(file.notes.size(), 1U);
+    EXPECT_EQ(file.notes[0], "Columns Acc are in g by the row of units: converted with 9.80665 to m/s².");
+  }
+  EXPECT_DOUBLE_EQ(UnitsRow{.units = "s,kN,g"}.read().hits[0].force_n(1), 5000.0);
+  EXPECT_NEAR(UnitsRow{.units = "ms,N,m/s²"}.read().hits[0].sample_rate_hz, 1e6, 1e-3);
+  const HitsFile in_volts =
+      UnitsRow{.units = "s,V,V", .acquisition = "force_mv_per_n = 1000\nresponse_mv_per_g = 1000\n"}.read();
+  EXPECT_NEAR(in_volts.hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12);
+  // Of the words behind a blank those count that are sure.
+  const HitsFile blank = UnitsRow{.units = "s,-,-", .names = "Time,Force kN,Acc g"}.read();
+  EXPECT_DOUBLE_EQ(blank.hits[0].force_n(1), 5000.0);
+  EXPECT_NEAR(blank.hits[0].responses[0].samples(1), 3.0 * 9.80665, 1e-12);
+}
+
+TEST(HitsToml, RejectsARowOfUnitsThatDoesNotFit) {
+  const auto says = [](const UnitsRow& row, const std::string& text) {
+    EXPECT_NE(row.rejection().find(text), std::string::npos) << row.rejection();
+  };
+  says({.units = "s,N,µε"}, "is in µε by the row of units, and is read in m/s²");
+  says({.units = "s,m/s^2,N"}, "Are the columns of force and response exchanged?");
+  says({.units = "s,V,g"}, "is a voltage by the row of units, and acquisition.force_mv_per_n is missing");
+  says({.units = "s,N,furlong"}, "a.csv:2: Acc = \"furlong\"; is no unit known here");
+  says({.units = "s,N,m/s^2", .names = "Time,Force,ax_g"}, "is in g by its name and in m/s^2 by the row of units");
+}
+
+TEST(HitsToml, SaysWhereABracketIsNoUnit) {
+  const HitsFile file = NamedColumns{.response = "acc x (front)"}.read();
+  ASSERT_EQ(file.notes.size(), 1U);
+  EXPECT_EQ(file.notes[0], "Columns acc x (front): \"front\" is no unit known here, and they are read in m/s².");
+}
+
+// What somebody typed stands before what a header states, and it is said.
+TEST(HitsToml, TakesTheRateThatIsTypedBeforeThatOfAHeader) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", "Sample rate: 25.6 kHz\nforce,ax\n0,1\n0.5,3\n0,5\n"));
+  static_cast<void>(folder.file("b.csv", "time_s,force,ax\n0,0,1\n0.001,0.5,3\n0.002,0,5\n"));
+  const auto read = [&](const std::string& rate, const char* name = "a.csv") {
+    return read_hits(folder.file("hits.toml", "[acquisition]\n" + rate + "[[hits]]\nfile = \"" + name +
+                                                  "\"\nforce = \"force\"\nforce_direction = \"x\"\n"
+                                                  "responses = { x = \"ax\" }\n"));
+  };
+  EXPECT_DOUBLE_EQ(read("").hits[0].sample_rate_hz, 25'600.0);
+  EXPECT_TRUE(read("sample_rate_hz = 25600\n").notes.empty());
+  const HitsFile other = read("sample_rate_hz = 51200\n");
+  EXPECT_DOUBLE_EQ(other.hits[0].sample_rate_hz, 51'200.0);
+  ASSERT_EQ(other.notes.size(), 1U);
+  EXPECT_NE(other.notes[0].find("its header states 25600 Hz, and acquisition.sample_rate_hz = 51200 Hz is taken"),
+            std::string::npos)
+      << other.notes[0];
+  EXPECT_NE(test::rejection([&] {
+              static_cast<void>(read("sample_rate_hz = 2000\n", "b.csv"));
+            }).find("was sampled at 1000 Hz, not at acquisition.sample_rate_hz = 2000 Hz"),
+            std::string::npos)
+      << "a column of time is no statement";
+}
+
 TEST(HitsToml, ListsWhatItAssumes) {
   const test::Folder folder;
   static_cast<void>(folder.file("a.csv", "time_s,force,ax\n0,0,1\n0.001,0.5,3\n0.002,0,5\n"));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -117,10 +118,10 @@ void require_usable(const io::JsonNode& root) {
 }
 
 /// Of JSON nothing is set.
-ModalModel read_modes_json(const io::TomlSource& source) {
+ModalModel read_modes_json(const io::TomlSource& source, std::vector<std::string>& notes) {
   const std::string name = source.path.string();
   const io::Json json = source.text ? io::parse_json(*source.text, name) : io::read_json(source.path);
-  const io::JsonNode root(json, name);
+  const io::JsonNode root(json, name, notes);
   require_usable(root);
   const io::JsonNode list = root.at("modes");
   std::vector<NamedMode> named(list.size());
@@ -174,7 +175,7 @@ std::vector<std::pair<Dof, std::complex<double>>> read_vector(io::TomlFile& file
   return out;
 }
 
-ModalModel read_modes_toml(const io::TomlSource& source) {
+ModalModel read_modes_toml(const io::TomlSource& source, std::vector<std::string>& notes) {
   io::TomlFile file(source);
   if (file.tables("modes") == 0) file.require("modes", "Write [[modes]] above each");
   std::vector<NamedMode> named(file.tables("modes"));
@@ -189,7 +190,7 @@ ModalModel read_modes_toml(const io::TomlSource& source) {
     named[k].right = read_vector(file, row + "right");
     if (bool weak = false; file.boolean(row + "weak", weak)) named[k].weak = weak;
   }
-  file.done();
+  std::ranges::move(file.done(), std::back_inserter(notes));
   ModalModel model = to_model(named);
   file.locate([&] { model.validate(); });
   mark_weak(model, named);
@@ -198,12 +199,12 @@ ModalModel read_modes_toml(const io::TomlSource& source) {
 
 }  // namespace
 
-ModalModel read_modes(const io::TomlSource& source) {
+ModalModel read_modes(const io::TomlSource& source, std::vector<std::string>& notes) {
   switch (io::format_of(source.path)) {
     case io::Format::json:
-      return read_modes_json(source);
+      return read_modes_json(source, notes);
     case io::Format::toml:
-      return read_modes_toml(source);
+      return read_modes_toml(source, notes);
     default:
       break;
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
@@ -16,6 +17,11 @@
 
 namespace robomill::modal {
 namespace modes_files_test {
+
+ModalModel read_modes(const io::TomlSource& source) {
+  std::vector<std::string> notes;
+  return modal::read_modes(source, notes);
+}
 
 void expect_same(const ModalModel& a, const ModalModel& b, double tolerance) {
   ASSERT_EQ(a.modes.size(), b.modes.size());

@@ -16,7 +16,7 @@ using Eigen::Index;
 
 constexpr std::size_t tried_candidates = 3;  // of those measured, refined …
 constexpr std::size_t most_candidates = 8;   // … or more, while none of them becomes a mode inside the bounds
-constexpr double exact = 1e-9;               // relative error at which nothing is left to explain
+constexpr double exact = 1e-7;               // relative error at which only rounding is left, to single precision
 constexpr double coarse_tolerance = 1e-4;    // of the cost, to compare fits
 
 double unknowns_of_a_mode(const FitData& data) {

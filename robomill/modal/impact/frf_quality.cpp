@@ -97,12 +97,26 @@ void judge_band(Judge& judge, const FrfGrade& grade, const HitOptions& options) 
   }
 }
 
-// Where force and response are one degree of freedom, a passive structure has Im H <= 0.
-void judge_sign(Judge& judge, const Frf& frf, const Lines& lines) {
+// Where force and response are one degree of freedom, a passive structure has Im H <= 0. The lines about the resonances
+// decide, weighted as mobilities are: what a slow drift adds to H grows as 1/f² to low frequencies and has any phase,
+// but makes no resonance. Of a right sign the share is near -0.7.
+void judge_sign(Judge& judge, const FrfSet& set, const Frf& frf, const Lines& lines,
+                const std::vector<FrfPeak>& peaks) {
+  constexpr double near = 0.02, least_share = 0.2;
   if (frf.name.response != frf.name.excitation) return;
-  const Eigen::VectorXcd h = frf.receptance.segment(lines.first, lines.count);
-  if (h.imag().cwiseProduct(h.cwiseAbs()).sum() > 0.0) {
-    judge.minor("the response runs against the force: Im H > 0 where the FRF is large",
+  double part = 0.0, whole = 0.0;
+  for (Index i = lines.first; i < lines.first + lines.count; ++i) {
+    const double frequency_hz = set.frequency_hz(i);
+    const auto is_near = [&](const FrfPeak& peak) {
+      return std::abs(frequency_hz - peak.frequency_hz) <= near * peak.frequency_hz;
+    };
+    if (std::ranges::none_of(peaks, is_near)) continue;
+    const double weight = frequency_hz * frequency_hz * std::abs(frf.receptance(i));
+    part += weight * frf.receptance(i).imag();
+    whole += weight * std::abs(frf.receptance(i));
+  }
+  if (part > least_share * whole) {
+    judge.minor("the response runs against the force: Im H > 0 at the resonances",
                 "check the signs of hammer and accelerometer (force_direction = \"-x\" for a hit against the axis)");
   }
 }
@@ -145,7 +159,7 @@ FrfGrade grade_one(const FrfSet& set, const Frf& frf, const FrfEvidence& evidenc
 
   judge_noise(judge, grade, evidence, lines);
   judge_band(judge, grade, options);
-  judge_sign(judge, frf, lines);
+  judge_sign(judge, set, frf, lines, grade.peaks);
   if (grade.reciprocity_error > 0.2) {
     judge.minor(
         fmt::format("{} and its mirror differ by {:.0f} %", to_string(frf.name), 100.0 * grade.reciprocity_error),

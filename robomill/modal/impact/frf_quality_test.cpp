@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <numbers>
 #include <string>
+#include <vector>
+
+#include "robomill/base/random.hpp"
 
 namespace robomill::modal {
 namespace frf_quality_test {
@@ -101,6 +106,17 @@ void expect_fault(const Fixture& f, Grade grade, const std::string& fault, const
   EXPECT_NE(got.remedies[0].find(remedy), std::string::npos) << got.remedies[0];
 }
 
+// Receptances of resonances at 60 and 240 Hz.
+Eigen::VectorXcd two_resonances(const Eigen::VectorXd& f) {
+  Eigen::VectorXcd h(f.size());
+  for (Index k = 0; k < f.size(); ++k) {
+    const double w = f(k);
+    h(k) = 1.0 / Complex(60.0 * 60.0 - w * w, 2.0 * 0.02 * 60.0 * w) +
+           0.2 / Complex(240.0 * 240.0 - w * w, 2.0 * 0.02 * 240.0 * w);
+  }
+  return h;
+}
+
 TEST(GradeFrfs, FindsNoFaultInAGoodOne) {
   const FrfGrade grade = first_grade(clean());
   EXPECT_EQ(grade.grade, Grade::good);
@@ -148,12 +164,42 @@ TEST(GradeFrfs, NamesEachFaultAndItsRemedy) {
 
   f = clean();
   f.set.frfs[0].name = parse_frf_name("xx");
-  f.set.frfs[0].receptance *= -1.0;
+  f.set.frfs[0].receptance = -two_resonances(f.set.frequency_hz);
   expect_fault(f, Grade::usable, "runs against the force", "signs");
 
   f = clean();
   f.evidence[0].relative_noise.setConstant(0.5);
   expect_fault(f, Grade::poor, "whole band", "more sensitive");
+}
+
+// What drift and flicker of the accelerometer add to a receptance: (b/f + flicker of any phase)/f², as one hit's tail
+// may hide it, up to 60 times the resonance at the first line.
+Eigen::VectorXcd low_frequency_noise(const Eigen::VectorXd& f, double share, Random& random) {
+  const double resonance = 1.0 / (2.0 * 0.02 * 60.0 * 60.0);  // |H| at 60 Hz
+  const Complex drift = std::polar(1.0, random.uniform(0.0, 2.0 * std::numbers::pi));
+  Eigen::VectorXcd out(f.size());
+  for (Index k = 0; k < f.size(); ++k) {
+    const Complex flicker(random.normal(), random.normal());
+    out(k) = share * resonance * (drift + 0.5 * flicker / std::sqrt(f(k))) / (f(k) * f(k));
+  }
+  return out;
+}
+
+TEST(GradeFrfs, ADriftIsNoWrongSign) {
+  for (const double share : {0.3, 3.0, 20.0, 60.0}) {
+    for (int seed = 0; seed < 200; ++seed) {
+      Random random(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(share));
+      for (const double sign : {1.0, -1.0}) {
+        Fixture f = clean();
+        f.set.frfs[0].name = parse_frf_name("xx");
+        f.set.frfs[0].receptance =
+            sign * two_resonances(f.set.frequency_hz) + low_frequency_noise(f.set.frequency_hz, share, random);
+        const std::vector<std::string> faults = first_grade(f).faults;
+        const auto of_sign = [](const std::string& fault) { return fault.find("runs against") != std::string::npos; };
+        EXPECT_EQ(std::ranges::any_of(faults, of_sign), sign < 0.0) << share << ", seed " << seed;
+      }
+    }
+  }
 }
 
 }  // namespace frf_quality_test

@@ -208,7 +208,7 @@ MonitorFile read_monitor(const io::TomlSource& source) {
   read_act(file, out.act);
   read_mqtt(file, out.mqtt);
   read_outputs(file, out);
-  file.done();
+  out.notes = file.done();
   check_options(file, out);
   return out;
 }

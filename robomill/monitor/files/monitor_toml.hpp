@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
@@ -71,6 +72,7 @@ struct MonitorFile {
   std::string metrics_host = "127.0.0.1";
   std::filesystem::path recording_folder = {};  ///< empty: alarms are not recorded
   double recording_s = 60.0;                    ///< before each alarm
+  std::vector<std::string> notes = {};          ///< sentences for the user
 };
 
 /// Everything but the sample rate, where it is missing, is checked.

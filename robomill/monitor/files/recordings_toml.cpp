@@ -54,7 +54,7 @@ RecordingsFile read_recordings(const io::TomlSource& source) {
   for (std::size_t i = 0; i < file.tables("recordings"); ++i) {
     out.recordings.push_back(read_recording(file, i, out.monitor.options.spindle_speed_rad_per_s));
   }
-  file.done();
+  out.monitor.notes = file.done();
   check_options(file, out.monitor);
   const auto chatters = [](const LabelledRecording& recording) { return recording.chatter; };
   for (const bool chatter : {true, false}) {

@@ -82,7 +82,7 @@ SmoothingFile read_smoothing(io::TomlFile& file, const robot::JointLimits& limit
   file.number("smoothing.drive_damping_ratio", "drive_damping_ratio", 1.0, out.drive_damping_ratio);
   file.number("smoothing.flexible_joint_damping_ratio", "flexible_joint_damping_ratio", 1.0,
               out.flexible_joint_damping_ratio);
-  file.done();
+  static_cast<void>(file.done());  // whoever read the cell has what is unusual in it
   file.locate([&] {
     out.options.validate();
     require_positive("drive_damping_ratio", out.drive_damping_ratio, "", "0.7 is usual");

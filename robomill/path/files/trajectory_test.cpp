@@ -37,7 +37,8 @@ TEST(TrajectoryCsv, HoldsEveryBitOfTheJoints) {
   const Folder folder;
   const auto samples = test::sines(3000);
   write(folder.at("t.csv"), test::arm_info(), samples);
-  const io::Table table = io::parse_table(io::read_file(folder.at("t.csv")), "t.csv");
+  std::vector<std::string> warnings;
+  const io::Table table = io::parse_table(io::read_file(folder.at("t.csv")), "t.csv", warnings);
   const std::vector<std::string> names = {"time_s", "q1",   "q2",   "q3", "q4", "q5", "q6",
                                           "x_mm",   "y_mm", "z_mm", "i",  "j",  "k",  "block"};
   ASSERT_EQ(table.names, names);
@@ -61,7 +62,8 @@ TEST(TrajectoryCsv, HasAColumnForEachJointOfTheMachine) {
   info.joints = 5;
   info.prismatic.fill(true);
   write(folder.at("t.csv"), info, test::sines(3));
-  EXPECT_EQ(io::parse_table(io::read_file(folder.at("t.csv")), "t.csv").names.size(), 13U);
+  std::vector<std::string> warnings;
+  EXPECT_EQ(io::parse_table(io::read_file(folder.at("t.csv")), "t.csv", warnings).names.size(), 13U);
 }
 
 class AnyEnding : public ::testing::TestWithParam<const char*> {};

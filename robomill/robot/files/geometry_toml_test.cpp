@@ -54,7 +54,7 @@ Read read(const std::string& text, const std::vector<Eigen::Isometry3d>& frames 
   io::TomlFile file(folder.file("cell.toml", text));
   Read out;
   out.geometry = read_geometry(file, testing::kr210_cell(), Eigen::Isometry3d::Identity(), frames, out.notes);
-  file.done();
+  static_cast<void>(file.done());
   return out;
 }
 

@@ -9,12 +9,14 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -86,9 +88,10 @@ double read_field(const io::TextTable& table, const io::TextTable::Row& row, std
 }  // namespace
 
 LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm) {
-  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
-  const Places places = find_columns(table, arm);
   LoadsFile out{.path = path};
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string(), out.notes);
+  const Places places = find_columns(table, arm);
+  std::vector<double> joints_deg;  // of all rows, to see whether they are in radians
   out.loads.reserve(table.rows.size());
   out.line.reserve(table.rows.size());
   for (const io::TextTable::Row& row : table.rows) {
@@ -101,9 +104,14 @@ LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm) {
       if (!places.others[i]) continue;
       columns[i].value(load) = read_field(table, row, *places.others[i], columns[i].factor);
     }
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      if (!arm.joints[i].prismatic) joints_deg.push_back(load.position(static_cast<Eigen::Index>(i)) / units::deg);
+    }
     out.loads.push_back(std::move(load));
     out.line.push_back(row.line);
   }
+  if (auto warning = io::unusual_warning(path.string(), "joints_deg", joints_deg))
+    out.notes.push_back(std::move(*warning));
   return out;
 }
 

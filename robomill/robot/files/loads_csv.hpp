@@ -15,7 +15,8 @@ namespace robomill::robot {
 struct LoadsFile {
   std::filesystem::path path = {};
   std::vector<Load> loads = {};
-  std::vector<std::size_t> line = {};  ///< of each, from 1
+  std::vector<std::size_t> line = {};   ///< of each, from 1
+  std::vector<std::string> notes = {};  ///< sentences for the user
 };
 
 /// Reads loads.csv: columns q1_deg … qn_deg (q2_mm of a prismatic joint) without load, fx_n, fy_n, fz_n on the robot,

@@ -181,8 +181,9 @@ std::string kind_of_table(const Beginning& file) {
   std::string_view text = file.text;
   if (!file.whole) text = text.substr(0, text.find_last_of("\r\n") + 1);  // the last line may be a part of one
   std::optional<io::Table> table;
+  std::vector<std::string> unread;
   try {
-    table = io::parse_table(text, {});
+    table = io::parse_table(text, {}, unread);
     if (table->columns.front().size() < fewest_rows) return "other";
     return holds_frfs(*table) ? "frf" : "record";
   } catch (const InvalidInput&) {

@@ -12,7 +12,7 @@ import type { MonitorFrame, MonitorMessage, MonitorRow, MonitorSummary } from '.
 import { MonitorFeed } from './monitor_feed';
 import { cutLines, deepest_db, Painter, palette, referenceFor, rgb, rowBands, scoreHeight, ticks } from './monitor_paint';
 import { decodeSpectrum, emptyColumn, FrameRing, noLevel } from './monitor_ring';
-import { factsOf, HistoryTable, Now } from './monitor_spindle';
+import { Basis, factsOf, HistoryTable, Now } from './monitor_spindle';
 import { News, newsText } from './monitor_news';
 import { playable, StartMonitor } from './monitor_start';
 import { stillThere, stopAction } from './monitor_stop';
@@ -246,6 +246,13 @@ function shown(view: ComponentChildren, files = folder.files): string {
 it('plays recordings, and the vibration of a simulated cut', () => {
   const files: FileEntry[] = [...folder.files, { ...file('vibration.csv', 'result'), document: 'vibration' }, { ...file('blocks.csv', 'result'), document: 'blocks' }];
   expect(playable(files).map(({ path }) => path)).toEqual(['cut.wav', 'vibration.csv']);
+});
+
+it('shows what was assumed and what its files say unusually', () => {
+  const assumed = [{ what: 'Teeth', taken: '2', key: 'process.teeth', file: 'monitor.toml' }];
+  const html = renderToString(<Basis assumed={assumed} warnings={['monitor.toml:8: is unusual']} />);
+  for (const text of ['process.teeth', 'of monitor.toml', 'Before you trust it', 'monitor.toml:8: is unusual']) expect(html).toContain(text);
+  expect(renderToString(<Basis assumed={[]} warnings={[]} />)).toBe('');
 });
 
 describe('the view', () => {

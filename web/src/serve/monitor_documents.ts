@@ -1,5 +1,5 @@
 // What page and server say to each other of spindles that are monitored.
-import type { Num, Owner } from '../documents';
+import type { Assumption, Num, Owner } from '../documents';
 import type { MonitorState, NoSpeed } from '../recorded';
 import type { Fault } from './documents';
 
@@ -75,6 +75,8 @@ export interface MonitorSummary extends MonitorCounts {
 
 export interface MonitorSession extends MonitorSummary {
   edges_hz: number[]; // of the bands
+  assumed: Assumption[];
+  warnings: string[]; // on what its files say
   alarms: MonitorRow[]; // newest first
   frames: MonitorFrame[]; // of ten minutes, one a second
 }

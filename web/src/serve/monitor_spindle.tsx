@@ -1,8 +1,9 @@
 // One spindle that is monitored: what it says now, its spectrogram, and its history.
 import { useEffect, useMemo, useState } from 'preact/hooks';
 import { duration, inputFaultText, noSpeedText, reasonText } from '../monitor_views';
-import { Facts, KeyFigures, Table, type KeyFigure } from '../parts';
+import { Facts, KeyFigures, Table, WarningBox, type KeyFigure } from '../parts';
 import { Choice } from '../plot';
+import { AssumedBox } from '../sections/assumed';
 import { dash, fixed, modeName, significant } from '../text';
 import type { Fact } from '../documents';
 import { useAnswer, useServe } from './context';
@@ -164,6 +165,16 @@ function History({ session, feed }: { session: MonitorSession; feed: MonitorFeed
   );
 }
 
+/** What its files leave open or say unusually, as a report of the same shows it. */
+export function Basis({ assumed, warnings }: Pick<MonitorSession, 'assumed' | 'warnings'>) {
+  return (
+    <>
+      <WarningBox heading="Before you trust it" texts={warnings} />
+      <AssumedBox assumed={assumed} />
+    </>
+  );
+}
+
 /** `since`: what asks for the session anew when it changes. */
 export function Spindle({ summary, feed, since }: { summary: MonitorSummary; feed: MonitorFeed; since: string }) {
   const { api } = useServe();
@@ -174,6 +185,7 @@ export function Spindle({ summary, feed, since }: { summary: MonitorSummary; fee
     <>
       <Now summary={summary} />
       <ErrorBox error={error} />
+      {answer && <Basis assumed={answer.assumed} warnings={answer.warnings} />}
       {answer && <Shown session={answer} feed={feed} chatter_hz={summary.frame?.chatter_frequency_hz ?? null} />}
       {answer && <History session={answer} feed={feed} />}
     </>
