@@ -197,7 +197,7 @@ TEST(Acting, TheSuggestedSpeedEndsChatter) {
   EXPECT_GT(before, 2.0 * forced_before);  // it did chatter
   const auto [after, forced_after] = cut.level(end_s - 1.0, end_s - 0.1);
   EXPECT_NEAR(after, forced_after, 0.01 * forced_after);
-  EXPECT_LT(after, 0.5 * before);
+  EXPECT_LT(after, 0.6 * before);  // before: as far as it had grown when it was detected
   EXPECT_TRUE(run.all_from(command.time_s + monitor::ActSettings().settle_s + 0.5, State::stable));
   // The cut went on: half of the time was at the full depth, with a feed.
   EXPECT_EQ(run.states.size(), static_cast<std::size_t>(end_s / 0.025));
