@@ -127,7 +127,7 @@ it('shows a decision of which no number is known, without a path to go to', () =
   const none = Object.fromEntries(Object.keys(decided!).map((key) => [key, null]));
   const outcome = { ...none, violations: [] } as unknown as NonNullable<Decision['decided']>;
   const html = decisionPage({ as_programmed: outcome, decided: outcome, stretches: [], evaluations: null, collisions_checked: true });
-  expect(html.match(/<div class="unknown">/g)).toHaveLength(9);
+  expect(html.match(/<div class="unknown">/g)).toHaveLength(10);
   expect(html).not.toContain('href="#path"');
   expect(html).not.toMatch(/NaN|undefined|null|Collisions were/);
   expect(html).toContain('at most 0.4 kW in block 512 (line 525)');
