@@ -67,9 +67,8 @@ std::string why_no_speed(const MonitorEvent& event) {
     case monitor::NoSpeed::mode_coupling:
       return "modes couple through the force, whatever the spindle speed: take less depth or another feed direction";
     case monitor::NoSpeed::forced_vibration:
-      return "at the speeds of its lobes tooth passing makes the tip vibrate by more than the feed per tooth: take "
-             "less "
-             "depth";
+      return "at the speeds of its lobes tooth passing makes the tip vibrate by more than the feed per tooth: "
+             "take less depth";
     case monitor::NoSpeed::ambiguous_alias:
       return fmt::format("signal.anti_alias_filter is not stated: the line may be {}",
                          monitor::line_text(event.line_hz));
