@@ -11,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
@@ -372,6 +373,11 @@ JobRequest read_job_request(const io::Json& body, const ResolvePath& resolve) {
 
 JobOutcome run_verb(const JobRequest& request, const fs::path& root, Progress& progress) {
   const VerbJob job(request, root);
+  std::vector<fs::path> places = {job.output()};
+  for (const char* option : {"holder_out", "frfs"}) {
+    if (job.has(option)) places.push_back(job.file(option));
+  }
+  const io::OutputPlaces outputs(std::move(places));
   if (!request.output.empty()) io::make_folder(job.output().parent_path());
   return verb_of(request.verb).run(job, progress);
 }

@@ -1,8 +1,6 @@
 #include "robomill/path/files/trajectory.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -55,25 +53,15 @@ void require_regular(const std::filesystem::path& path) {
   }
 }
 
-PendingText::PendingText(const std::filesystem::path& path) : path_(path), pending_((require_regular(path), path)) {
-  restart();
-}
-
-void PendingText::require(bool good) const {
-  if (!good) throw InvalidInput(path_.string(), "cannot be written", errno != 0 ? std::strerror(errno) : "");
-}
+PendingText::PendingText(const std::filesystem::path& path) : pending_((require_regular(path), path)) {}
 
 void PendingText::restart() {
   buffer_.clear();
-  file_.reset();
-  errno = 0;
-  file_.reset(std::fopen(pending_.temporary().c_str(), "wb"));
-  require(file_ != nullptr);
+  pending_.resize(0);
 }
 
 void PendingText::flush() {
-  errno = 0;
-  require(std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size());
+  pending_.write({buffer_.data(), buffer_.size()});
   buffer_.clear();
 }
 
@@ -83,8 +71,6 @@ void PendingText::drain() {
 
 void PendingText::commit() {
   flush();
-  errno = 0;
-  require(std::fclose(file_.release()) == 0);
   pending_.commit();
 }
 
