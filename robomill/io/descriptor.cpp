@@ -111,4 +111,8 @@ int exchange_files(const std::filesystem::path& one, const std::filesystem::path
              : errno;
 }
 
+int remove_name(const std::filesystem::path& path) noexcept {
+  return ::unlink(path.c_str()) == 0 || errno == ENOENT ? 0 : errno;
+}
+
 }  // namespace robomill::io

@@ -48,4 +48,7 @@ class Descriptor {
 /// Two files change places, at once. EINVAL or ENOSYS where the file system cannot.
 [[nodiscard]] int exchange_files(const std::filesystem::path& one, const std::filesystem::path& other) noexcept;
 
+/// A file that is not there is removed.
+[[nodiscard]] int remove_name(const std::filesystem::path& path) noexcept;
+
 }  // namespace robomill::io

@@ -15,6 +15,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
+#include "robomill/io/folder_change.hpp"
 #include "robomill/io/output_places.hpp"
 #include "robomill/io/pending_names.hpp"
 
@@ -77,6 +78,7 @@ Format format_of(const fs::path& path) {
 std::ifstream open_file(const fs::path& path) {
   require_inside(path);
   require_no_output(path);
+  require_completed(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) reject(path, "there is no such file");
@@ -160,10 +162,14 @@ PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
 }
 
 PendingFile::~PendingFile() {
-  std::error_code ignored;
+  discard();
+}
+
+void PendingFile::discard() noexcept {
   if (temporary_.empty()) return;
-  fs::remove(temporary_, ignored);
+  static_cast<void>(remove_name(temporary_));
   forget_pending(temporary_);
+  temporary_.clear();
 }
 
 bool PendingFile::keep(int error) noexcept {

@@ -20,8 +20,8 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 [[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
 
 /// A file opened to be read.
-/// @throws InvalidInput if there is no such file, it is a directory, cannot be read, or is an output (OutputPlaces); or
-/// while a Confinement lives,
+/// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is an output (OutputPlaces) or of
+///     an unfinished FolderChange; or while a Confinement lives,
 /// if
 ///     it is a device or a pipe
 [[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
@@ -76,6 +76,8 @@ class PendingFile {
   void prepare();
   /// prepare(), and moves it to its place. @throws InvalidInput if that fails
   void commit();
+  /// Takes away what stands under the temporary name, and ends its use.
+  void discard() noexcept;
 
  private:
   bool keep(int error) noexcept;

@@ -45,6 +45,10 @@ std::optional<ProgramRun> SampleFile::verify(program::Source& /*program*/, const
 
 void SampleFile::state_collisions(const std::string& /*found*/) {}
 
+void SampleFile::commit() {
+  finish().commit();
+}
+
 void require_regular(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
@@ -69,9 +73,10 @@ void PendingText::drain() {
   if (buffer_.size() >= large) flush();
 }
 
-void PendingText::commit() {
+io::PendingFile& PendingText::finish() {
   flush();
-  pending_.commit();
+  pending_.prepare();
+  return pending_;
 }
 
 std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, const TrajectoryInfo& info) {

@@ -73,14 +73,14 @@ class Hdf5 final : public SampleFile {
 
   void state_collisions(const std::string& found) override { collisions_ = found; }
 
-  void commit() override {
+  io::PendingFile& finish() override {
     text(file_.get(), "collisions", collisions_);
     flush();
     close();
     require(file_.reset());
     pending_.prepare();
     require(io::is_whole_hdf5(pending_.temporary()));
-    pending_.commit();
+    return pending_;
   }
 
  private:

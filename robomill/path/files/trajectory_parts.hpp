@@ -23,7 +23,8 @@ class PendingText {
   /// Writes the buffer out where it has grown large.
   void drain();
   void restart();
-  void commit();
+  /// As SampleFile::finish.
+  [[nodiscard]] io::PendingFile& finish();
 
  private:
   void flush();
