@@ -6,7 +6,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <utility>
+
+#include "robomill/base/error.hpp"
 
 namespace robomill::io {
 namespace {
@@ -39,6 +42,10 @@ bool cannot_be_synchronised(int error) noexcept {
 }
 
 }  // namespace
+
+void require_success(const std::filesystem::path& path, int error) {
+  if (error != 0) throw InvalidInput(path.string(), "cannot be written", std::strerror(error));
+}
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : open_(std::exchange(other.open_, -1)) {}
 

@@ -9,6 +9,9 @@
 /// callbacks of libraries and signal-safe code can use them.
 namespace robomill::io {
 
+/// Unless the error is 0. @throws InvalidInput that the file cannot be written, with the system's reason
+void require_success(const std::filesystem::path& path, int error);
+
 /// An open file that closes itself.
 class Descriptor {
  public:

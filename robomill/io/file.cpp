@@ -28,10 +28,6 @@ namespace fs = std::filesystem;
   throw InvalidInput(path.string(), std::move(rule), std::move(hint));
 }
 
-void require_success(const fs::path& path, int error) {
-  if (error != 0) reject(path, "cannot be written", std::strerror(error));
-}
-
 /// A link stays a link: what it points to is replaced, or taken away.
 fs::path behind_link(const fs::path& path) {
   std::error_code ignored;

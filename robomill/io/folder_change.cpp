@@ -24,10 +24,6 @@ namespace fs = std::filesystem;
 constexpr const char* marker_name = ".robomill-unfinished";
 constexpr std::size_t most_marker_bytes = std::size_t{1} << 16;
 
-void require_success(const fs::path& path, int error) {
-  if (error != 0) throw InvalidInput(path.string(), "cannot be written", std::strerror(error));
-}
-
 /// Names the files of a change while they take their places, a line each: the file's name and that of the temporary
 /// file that takes its place. Whoever changes the folder holds its lock, which ends with the process.
 class Marker {

@@ -77,7 +77,7 @@ void require_self_contained_hdf5(const std::filesystem::path& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are reported as ours
   H5PLset_loading_state(0);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) throw InvalidInput(path.string(), "is a damaged HDF5 file");
+  if (file < 0) throw InvalidInput(path.string(), "is a damaged HDF5 file, or one that was cut off");
   Found found;
   const herr_t ended = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &found);
   H5Fclose(file);
@@ -85,7 +85,7 @@ void require_self_contained_hdf5(const std::filesystem::path& path) {
     throw InvalidInput(path.string(), fmt::format("{} {}", found.object, found.rule),
                        "Save the file anew, with all of its data in it");
   }
-  if (ended < 0) throw InvalidInput(path.string(), "is a damaged HDF5 file");
+  if (ended < 0) throw InvalidInput(path.string(), "is a damaged HDF5 file, or one that was cut off");
 }
 
 }  // namespace robomill::io

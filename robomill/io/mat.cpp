@@ -38,12 +38,12 @@ constexpr double most_packed = 1100.0;
 /// Beyond what is in use already and what the file's size asks for [bytes].
 constexpr std::size_t most_memory = std::size_t{64} << 20;
 
-/// Version 7.3 is an HDF5 file behind a block of 512 bytes; a file without that block is one too.
+/// Version 7.3 is an HDF5 file behind a header of version 5; without that header it is one too.
 bool is_hdf5(std::string_view content) {
-  for (std::size_t at = 0; at + 8 <= content.size(); at = at == 0 ? 512 : 2 * at) {
-    if (content.substr(at).starts_with("\x89HDF\r\n\x1a\n")) return true;
-  }
-  return false;
+  constexpr std::size_t version = 124;
+  const std::string_view words = content.size() < 128 ? std::string_view() : content.substr(version, 4);
+  return words == std::string_view("\0\2IM", 4) || words == std::string_view("\2\0MI", 4) ||
+         content.starts_with("\x89HDF\r\n\x1a\n");
 }
 
 /// All that was written into memory; less where that could not be read.

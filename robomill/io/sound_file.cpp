@@ -44,8 +44,7 @@ std::string_view read_at(int file, std::uint64_t offset, std::span<char> to) {
   return {to.data(), count};
 }
 
-/// None where the file is no WAV, has no samples, or does not say how long they are, as a recorder that was not stopped
-/// leaves it.
+/// None where the file is no WAV or has as many samples as follow.
 std::optional<WavLength> wav_length(int file, std::uint64_t file_bytes) {
   constexpr std::uint64_t unknown = 0xFFFFFFFF;
   constexpr int most_chunks = 1000;
@@ -64,9 +63,9 @@ std::optional<WavLength> wav_length(int file, std::uint64_t file_bytes) {
     const std::string_view name = chunk.substr(0, 4);
     const std::uint64_t size = numbers.at(chunk, 4, 4);
     if (name == "data") {
-      out.stated_bytes = size == unknown ? long_size : size;
+      out.stated_bytes = size == unknown ? long_size : size;  // unknown: as a stream's recorder leaves it
       out.bytes = file_bytes - std::min(file_bytes, offset + 8);
-      return out.stated_bytes == 0 ? std::nullopt : std::optional(out);
+      return size == unknown && long_size == 0 ? std::nullopt : std::optional(out);
     }
     if (name == "ds64" && chunk.size() == 24) long_size = numbers.at(chunk, 16, 8);
     if (name == "fmt " && chunk.size() >= 20) out.bytes_per_s = numbers.at(chunk, 16, 4);
@@ -75,7 +74,12 @@ std::optional<WavLength> wav_length(int file, std::uint64_t file_bytes) {
   return std::nullopt;
 }
 
+/// @throws InvalidInput if no samples are stated and there are some: the library would find none
 std::string note_of(const std::filesystem::path& path, const WavLength& length) {
+  if (length.stated_bytes == 0 && length.bytes > 0) {
+    throw InvalidInput(path.string(), fmt::format("states no samples, and {} bytes of them follow", length.bytes),
+                       "Its recorder was not stopped: the lengths in its header must be set");
+  }
   if (length.bytes >= length.stated_bytes) return {};
   const double rate = static_cast<double>(length.bytes_per_s);
   const auto text = [rate](std::uint64_t bytes) {

@@ -19,7 +19,7 @@ struct SoundFile {
   std::string note = {};  ///< that the file is shorter than its header says; empty: it is not
 };
 
-/// @throws InvalidInput if there is none, or it has no channel or no sample rate
+/// @throws InvalidInput if there is none, it has no channel or no sample rate, or states no samples and has some
 [[nodiscard]] SoundFile open_sound(const std::filesystem::path& path);
 
 }  // namespace robomill::io
