@@ -125,15 +125,19 @@ TEST(Posture, StandsAsAtHomeWithoutWholeTurns) {
   }
 }
 
-// The same pose by (141°, -60°) and, a turn on, (-219°, 300°): limits of +-350° allow both.
+// The same pose by (141°, -60°) and, a turn on, (-219°, 300°): limits of +-350° allow both. Nearer to a singularity
+// than a margin of 0.05 another way may be taken.
 TEST(Posture, UnwindsWhatLimitsWouldLetWind) {
   const robot::SerialKinematics machine(facing_cell());
   Random random(7);
+  int followed = 0;
   for (int k = 0; k < robomill::test::seeds(40); ++k) {
     robot::Position6 home = arms::kr210_posture();
     for (double& angle : home) angle += random.uniform(-0.3, 0.3);
     robot::Position6 start = home;
     for (double& angle : start) angle += random.uniform(-0.2, 0.2);
+    if (machine.regularity(start) < 0.06) continue;
+    ++followed;
     const robot::ToolPose tool = machine.forward(start);
     const program::Program program =
         program_of({.tip_m = tool.tip_m, .axis = tool.axis},
@@ -143,6 +147,7 @@ TEST(Posture, UnwindsWhatLimitsWouldLetWind) {
         choose_posture(source, machine, {.gamma_rad = tool.gamma_rad, .home = home, .margin_for_home = 1.0});
     EXPECT_LT((choice.posture.start - start).cwiseAbs().maxCoeff(), 1e-8) << k;
   }
+  EXPECT_GT(followed, 0);
 }
 
 // Of eight ways to a pose, and their turns within ±360°, that with home's shoulder, elbow and wrist.
