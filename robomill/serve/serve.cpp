@@ -141,7 +141,8 @@ Server::Server(const ServeOptions& options) {
                             [&parts](std::string_view event, std::string_view data) { parts.publish(event, data); });
   parts.http->start(
       {.admit = [&parts](const HttpRequest& request) { return parts.admit(request); },
-       .handle = [&parts](HttpRequest request, const Reply& reply) { parts.handle(std::move(request), reply); }});
+       .handle = [&parts](HttpRequest request, const Reply& reply) { parts.handle(std::move(request), reply); },
+       .knows = [&parts](const HttpRequest& request) { return parts.guard.knows(request); }});
 }
 
 Server::~Server() = default;
