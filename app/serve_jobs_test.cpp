@@ -62,6 +62,7 @@ class ServeJobs : public ProgramTest {
     return json::parse(answer.body).value("id", 0);
   }
   [[nodiscard]] json job(int id) const { return json::parse(ask("GET", "/api/jobs/" + std::to_string(id)).body); }
+  [[nodiscard]] bool works_on(int id) const { return job(id)["state"] == "running" && workers().size() == 1; }
   [[nodiscard]] json end_of(int id) const {
     json last;
     EXPECT_TRUE(wait_for([&] {
@@ -112,7 +113,7 @@ TEST_F(ServeJobs, AProcessThatIsKilledIsAMessageOfItsJob) {
   start();
   for (const int number : {SIGKILL, SIGSEGV}) {
     const int id = run("slow.toml");
-    ASSERT_TRUE(wait_for([&] { return job(id)["fraction"] > 0.0 && workers().size() == 1; })) << job(id);
+    ASSERT_TRUE(wait_for([&] { return works_on(id); })) << job(id);
     for (const pid_t worker : workers()) ::kill(worker, number);
     const json ended = end_of(id);
     EXPECT_EQ(ended["state"], "failed") << ended;
@@ -131,7 +132,7 @@ TEST_F(ServeJobs, AProcessThatIsKilledIsAMessageOfItsJob) {
 TEST_F(ServeJobs, ACancelledJobEndsWithItsProcess) {
   start();
   const int id = run("slow.toml", "out.json");
-  ASSERT_TRUE(wait_for([&] { return job(id)["fraction"] > 0.0; })) << job(id);
+  ASSERT_TRUE(wait_for([&] { return works_on(id); })) << job(id);
   // One that does not listen is killed.
   for (const pid_t worker : workers()) ::kill(worker, SIGSTOP);
   EXPECT_EQ(ask("DELETE", "/api/jobs/" + std::to_string(id)).status, 200);
@@ -176,7 +177,7 @@ TEST_F(ServeJobs, LiveLobesSurviveTheirProcess) {
 TEST_F(ServeJobs, WorkersEndWithTheServer) {
   start();
   const int id = run("slow.toml");
-  ASSERT_TRUE(wait_for([&] { return job(id)["fraction"] > 0.0; })) << job(id);
+  ASSERT_TRUE(wait_for([&] { return works_on(id); })) << job(id);
   const std::vector<pid_t> working = workers();
   ASSERT_EQ(working.size(), 1U);
   server_->signal(SIGKILL);
@@ -191,7 +192,7 @@ TEST_F(ServeJobs, OpenNothingOutside) {
   start();
   EXPECT_EQ(slurp(folder_.at("out.txt")).find("Landlock"), std::string::npos);
   const int id = run("slow.toml");
-  ASSERT_TRUE(wait_for([&] { return workers().size() == 1; })) << job(id);
+  ASSERT_TRUE(wait_for([&] { return works_on(id); })) << job(id);
   const pid_t worker = workers().front();
   EXPECT_TRUE(wait_for([&] {  // what restricts itself says so first
     return of_process(worker, "status").find("NoNewPrivs:\t1") != std::string::npos;
