@@ -357,7 +357,7 @@ int run_chosen(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     // No verb: nobody but `robomill serve` starts it.
-    if (argc == 2 && robomill::app::serve_worker == argv[1]) return robomill::serve::work_for_server();
+    if (argc == 2 && robomill::app::serve_worker == argv[1]) return robomill::app::work_for_server();
     return robomill::app::run_chosen(argc, argv);
   } catch (...) {
     // Thrown before there is a verb to blame, or by the report of another error.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -15,6 +16,20 @@
 #include "verbs.hpp"
 
 namespace robomill::app {
+namespace {
+
+std::shared_ptr<void> open_broker(const monitor::MonitorFile& file, const serve::StreamSink& sink,
+                                  const std::atomic<bool>& ended) {
+  auto broker = std::make_shared<Broker>(file, true, sink.queue, sink.notices, sink.metrics);
+  broker->require_connection(ended);
+  return broker;
+}
+
+}  // namespace
+
+int work_for_server() {
+  return serve::work_for_server(open_broker);
+}
 
 Exit run(const ServeCommand& command, const Common& common, Progress&) {
   if (!common.output.empty()) throw InvalidInput("--output", "serve writes nothing by itself", "Leave -o out");
@@ -24,12 +39,7 @@ Exit run(const ServeCommand& command, const Common& common, Progress&) {
   options.memory_bytes = std::uint64_t{1'000'000} * static_cast<std::uint64_t>(command.job_memory_mb);
   options.worker = {"/proc/self/exe", std::string(serve_worker)};  // this program, also where its file was replaced
   const bool restricted = serve::restrict_to_folder(options.folder);
-  options.open_stream = [](const monitor::MonitorFile& file, const serve::StreamSink& sink,
-                           const std::atomic<bool>& ended) -> std::shared_ptr<void> {
-    auto broker = std::make_shared<Broker>(file, true, sink.queue, sink.notices, sink.metrics);
-    broker->require_connection(ended);
-    return broker;
-  };
+  options.open_stream = open_broker;
   const serve::Server server(options);
   fmt::print("{}\n", server.address());
   if (!common.quiet) {

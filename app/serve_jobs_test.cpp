@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "monitor/test_processes.hpp"
+#include "robomill/io/sample_source.hpp"
 #include "robomill/io/sandbox.hpp"
 #include "test_program.hpp"
 #include "testing/serve/http_client.hpp"
@@ -164,7 +166,8 @@ TEST_F(ServeJobs, LiveLobesSurviveTheirProcess) {
   EXPECT_EQ(lobes().status, 200);
   EXPECT_EQ(workers(), std::vector<pid_t>{kept});  // the same one
   ::kill(kept, SIGKILL);
-  ASSERT_TRUE(wait_for([&] { return lobes().status == 200; }));
+  ASSERT_TRUE(wait_for([&] { return workers().empty() || command_of(kept).empty(); }));
+  EXPECT_EQ(lobes().status, 200);  // by another
   EXPECT_NE(workers().front(), kept);
   // What a file says is checked in another.
   const test::HttpAnswer checked = ask("POST", "/api/check", {{"path", "a.toml"}, {"text", test::slot_lobes}});
@@ -172,6 +175,47 @@ TEST_F(ServeJobs, LiveLobesSurviveTheirProcess) {
   EXPECT_EQ(json::parse(checked.body)["kind"], "lobes");
   EXPECT_EQ(workers().size(), 2U);
   EXPECT_EQ(ask("POST", "/api/inspect", {{"path", "none.csv"}}).status, 400);
+}
+
+TEST_F(ServeJobs, SpindlesAreMonitoredInAProcessOfTheirOwn) {
+  start();
+  write("served/monitor.toml",
+        "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\nspindle_speed_rpm = 3000\n"
+        "teeth = 2\n");
+  std::vector<float> samples;
+  for (int i = 0; i < 600 * 10'240; ++i) samples.push_back(static_cast<float>(std::sin(0.0307 * i)));
+  io::write_wav(folder_.at("served/cut.wav"), samples, 1, 10'240.0);
+  EXPECT_EQ(ask("GET", "/api/monitors").body, "[]\n");
+  EXPECT_TRUE(workers().empty());  // none is needed for that
+  const auto monitor = [&] {
+    const test::HttpAnswer answer = ask("POST", "/api/monitors", {{"config", "monitor.toml"}, {"input", "cut.wav"}});
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return json::parse(answer.body).value("id", 0);
+  };
+  const auto spindle = [&](int id) { return json::parse(ask("GET", "/api/monitors/" + std::to_string(id)).body); };
+  EXPECT_EQ(ask("POST", "/api/monitors", {{"config", "none.toml"}, {"input", "cut.wav"}}).status, 400);
+  ASSERT_EQ(monitor(), 1);
+  ASSERT_TRUE(wait_for([&] { return spindle(1)["decision_count"] > 0; })) << spindle(1);
+  test::HttpConnection events(port());
+  events.send(test::http_text(port(), "GET", "/api/events"));
+  ASSERT_TRUE(events.wait_for("event: monitor\n"));  // its news come through
+  ASSERT_EQ(workers().size(), 1U);
+  ::kill(workers().front(), SIGKILL);
+  ASSERT_TRUE(events.wait_for("event: monitors\n"));
+  const json lost = spindle(1);
+  EXPECT_EQ(lost["status"], "failed") << lost;
+  EXPECT_NE(lost["error"]["text"].get<std::string>().find("was killed"), std::string::npos) << lost;
+  EXPECT_EQ(lost["frames"], json::array());
+  EXPECT_EQ(ask("GET", "/api/state").status, 200);
+  // Another one has another process and another number.
+  ASSERT_EQ(monitor(), 2);
+  EXPECT_EQ(json::parse(ask("GET", "/api/monitors").body).size(), 2U);
+  EXPECT_EQ(ask("DELETE", "/api/monitors/1").status, 200);
+  const json left = json::parse(ask("GET", "/api/monitors").body);
+  ASSERT_EQ(left.size(), 1U) << left;
+  EXPECT_EQ(left[0]["id"], 2);
+  EXPECT_EQ(json::parse(ask("DELETE", "/api/monitors/2").body), json::array());
+  EXPECT_EQ(ask("GET", "/api/monitors/2").status, 404);
 }
 
 TEST_F(ServeJobs, WorkersEndWithTheServer) {

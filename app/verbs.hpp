@@ -140,6 +140,8 @@ struct ServeCommand {
 };
 /// What this program is asked for where it is to work for a server that it is too (ServeOptions::worker).
 inline constexpr std::string_view serve_worker = "serve-worker";
+/// The program's exit code.
+[[nodiscard]] int work_for_server();
 
 Exit run(const InitCommand& command, const Common& common, Progress& progress);
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);

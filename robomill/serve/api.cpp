@@ -29,6 +29,7 @@
 #include "robomill/serve/live_program.hpp"
 #include "robomill/serve/monitor_sessions.hpp"
 #include "robomill/serve/process/job_process.hpp"
+#include "robomill/serve/process/monitor_service.hpp"
 #include "robomill/serve/tap_tests.hpp"
 #include "robomill/serve/toml_literal.hpp"
 #include "robomill/serve/worker.hpp"
@@ -86,7 +87,7 @@ io::Json file_object(const FolderFile& file) {
 }
 
 /// How jobs are run: each in a process of its own where there is a program for that.
-RunJob runner_of(const Folder& folder, const WorkerProcess::Options& worker) {
+RunJob runner_of(const Folder& folder, const WorkerOptions& worker) {
   if (worker.command.empty()) return run_here(folder.root());
   return [worker](const JobRequest& request, const Progress::Report& report, const std::atomic<bool>& stop) {
     return run_in_process(worker, request, report, stop);
@@ -94,14 +95,20 @@ RunJob runner_of(const Folder& folder, const WorkerProcess::Options& worker) {
 }
 
 /// One that is kept; none where there is no program for it.
-std::unique_ptr<WorkerProcess> kept(const WorkerProcess::Options& worker) {
+std::unique_ptr<WorkerProcess> kept(const WorkerOptions& worker) {
   return worker.command.empty() ? nullptr : std::make_unique<WorkerProcess>(worker);
+}
+
+std::unique_ptr<MonitorService> service_of(WorkerOptions worker, const Api::Publish& publish) {
+  if (worker.command.empty()) return nullptr;
+  worker.connects = true;
+  return std::make_unique<MonitorService>(std::move(worker), publish);
 }
 
 }  // namespace
 
 struct Api::Parts {
-  Parts(const Folder& served, OpenStream open_stream, const WorkerProcess::Options& worker, Publish publisher)
+  Parts(const Folder& served, OpenStream open_stream, const WorkerOptions& worker, Publish publisher)
       : folder(served),
         publish(std::move(publisher)),
         live(kept(worker)),
@@ -109,7 +116,8 @@ struct Api::Parts {
         jobs(
             folder.root(), [this](const std::string& job) { publish("job", job); }, runner_of(folder, worker)),
         taps(folder, open_stream, publish),
-        monitors(folder, std::move(open_stream), publish) {}
+        monitors(folder, std::move(open_stream), publish),
+        monitor_service(service_of(worker, publish)) {}
   /// So that no thread waits for an answer any more.
   ~Parts() {
     if (live) live->end();
@@ -136,9 +144,10 @@ struct Api::Parts {
   std::unique_ptr<WorkerProcess> live;    ///< lobes; null: in this process
   std::unique_ptr<WorkerProcess> reader;  ///< of files that a request names; null: in this process
   JobRunner jobs;
-  TapTests taps;             ///< of the worker alone
-  MonitorSessions monitors;  ///< of the worker alone
-  LiveLobes lobes;           ///< of latest's thread alone
+  TapTests taps;                                    ///< of the worker alone
+  MonitorSessions monitors;                         ///< of the worker alone
+  std::unique_ptr<MonitorService> monitor_service;  ///< in place of them; null: in this process
+  LiveLobes lobes;                                  ///< of latest's thread alone
   Latest latest;
   Worker files{64};
   std::mutex waiting;
@@ -251,7 +260,9 @@ HttpResponse Api::Parts::answer(const HttpRequest& request) {
   if (path.starts_with("/api/jobs/")) return about_job(request);
   if (path == "/api/jobs" && request.method == "GET") return json_response(jobs.list());
   if (path.starts_with("/api/tap")) return taps.answer(request);
-  if (path.starts_with("/api/monitors")) return monitors.answer(request);
+  if (path.starts_with("/api/monitors")) {
+    return monitor_service ? monitor_service->answer(request) : monitors.answer(request);
+  }
   if (path == "/api/check" || path == "/api/inspect") return read_file_of(request);
   const io::Json body = io::parse_json(request.body, "request");
   if (path == "/api/jobs") return start_job(body);
@@ -322,7 +333,7 @@ void Api::Parts::watch(const std::stop_token& stop) {
   }
 }
 
-Api::Api(const Folder& folder, OpenStream open_stream, const WorkerProcess::Options& worker, Publish publish)
+Api::Api(const Folder& folder, OpenStream open_stream, const WorkerOptions& worker, Publish publish)
     : parts_(std::make_unique<Parts>(folder, std::move(open_stream), worker, std::move(publish))) {}
 
 Api::~Api() = default;

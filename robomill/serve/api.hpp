@@ -21,7 +21,7 @@ class Api {
   using Publish = std::function<void(std::string_view event, std::string_view data)>;
   /// @param open_stream  ServeOptions'
   /// @param worker       what works in processes of its own; without a command all is done in this one
-  Api(const Folder& folder, OpenStream open_stream, const WorkerProcess::Options& worker, Publish publish);
+  Api(const Folder& folder, OpenStream open_stream, const WorkerOptions& worker, Publish publish);
   ~Api();
   Api(const Api&) = delete;
   Api& operator=(const Api&) = delete;

@@ -54,7 +54,7 @@ std::string address_of(const std::string& host) {
   return host == "localhost" ? "127.0.0.1" : host;
 }
 
-WorkerProcess::Options worker_of(const ServeOptions& options, const Folder& folder) {
+WorkerOptions worker_of(const ServeOptions& options, const Folder& folder) {
   return {.command = options.worker,
           .root = folder.root(),
           .memory_bytes = options.memory_bytes > 0 ? options.memory_bytes : io::machine_memory_bytes() / 2};

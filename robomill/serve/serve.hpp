@@ -44,8 +44,8 @@ struct ROBOMILL_API ServeOptions {
   /// Of at least 16 letters, digits, - or _: who asks has to know it. Empty: anybody on this machine may ask.
   std::string token = {};
   OpenStream open_stream = {};  ///< the library itself knows no broker; none: recordings alone
-  /// A program that calls work_for_server(), and its arguments: jobs, live lobes and files that are looked at run in
-  /// processes of it, so that the server survives them. Empty: in this process.
+  /// A program that calls work_for_server(), and its arguments: jobs, live lobes, files that are looked at and spindles
+  /// that are monitored run in processes of it, so that the server survives them. Empty: in this process.
   std::vector<std::string> worker = {};
   std::uint64_t memory_bytes = 0;  ///< that each such process may have; 0: half of the machine's
   /// @throws InvalidInput naming the member
@@ -75,9 +75,11 @@ class ROBOMILL_API Server {
 };
 
 /// What ServeOptions::worker does: answers the server that started it, until the server ends. It opens nothing outside
-/// the folder that is served but libraries, and no connection, where the kernel can see to that.
+/// the folder that is served but libraries, and no connection, where the kernel can see to that; one that monitors
+/// spindles also the system's settings, and connections.
+/// @param open_stream  ServeOptions', for spindles that are monitored
 /// @return the program's exit code; 2 where no server started it
-[[nodiscard]] ROBOMILL_API int work_for_server();
+[[nodiscard]] ROBOMILL_API int work_for_server(OpenStream open_stream = {});
 
 /// For a program that does nothing but serve, before it has a second thread: from here on it opens no file outside the
 /// folder but those that belong to the system and to itself, whatever it is made to do, nor does what it starts.

@@ -2,8 +2,10 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -31,6 +33,14 @@ bool send_frame(int socket, char kind, std::string_view body) {
   std::array<char, head_bytes> head = {kind};
   std::memcpy(head.data() + 1, &length, sizeof(length));
   return send_all(socket, {head.data(), head.size()}) && send_all(socket, body);
+}
+
+HttpResponse response_of(std::string_view answer) {
+  HttpResponse out = {.status = 500};
+  const std::size_t blank = std::min(answer.find(' '), answer.size());
+  std::from_chars(answer.data(), answer.data() + blank, out.status);
+  out.body = answer.substr(std::min(blank + 1, answer.size()));
+  return out;
 }
 
 std::optional<Frame> FrameReader::next() {

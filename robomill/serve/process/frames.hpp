@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "robomill/serve/http/server.hpp"
+
 // Method: robomill/serve/README.md, "Processes"
 
 namespace robomill::serve {
@@ -11,9 +13,10 @@ namespace robomill::serve {
 /// What goes between the server and a process that works for it: what it is, and its bytes.
 struct Frame {
   /// To the process: what it may do, first of all; what it is asked; that it should stop.
-  static constexpr char begin = 'b', job = 'j', program = 'p', lobes = 'l', check = 'c', inspect = 'i', stop = 's';
-  /// From it: how far it is; its answer.
-  static constexpr char progress = 'f', answer = 'a';
+  static constexpr char begin = 'b', job = 'j', program = 'p', lobes = 'l', check = 'c', inspect = 'i', monitors = 'm',
+                        stop = 's';
+  /// From it: how far it is; an event for the pages; its answer.
+  static constexpr char progress = 'f', event = 'e', answer = 'a';
 
   char kind = 0;
   std::string body = {};
@@ -23,6 +26,9 @@ inline constexpr std::size_t longest_question = std::size_t{4} << 20, longest_an
 
 /// False where the other end is gone, or takes nothing for as long as the socket waits.
 [[nodiscard]] bool send_frame(int socket, char kind, std::string_view body);
+
+/// An answer's body: "200 {…}".
+[[nodiscard]] HttpResponse response_of(std::string_view answer);
 
 /// Frames out of bytes that come in any pieces.
 class FrameReader {

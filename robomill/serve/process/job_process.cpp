@@ -43,11 +43,9 @@ std::string text_of(const JobOutcome& outcome, std::size_t blocks) {
          outcome.report;
 }
 
-JobRun run_in_process(const WorkerProcess::Options& options, const JobRequest& request, const Progress::Report& report,
+JobRun run_in_process(const WorkerOptions& options, const JobRequest& request, const Progress::Report& report,
                       const std::atomic<bool>& stop) {
-  WorkerProcess::Options remembering = options;
-  remembering.remembers = true;
-  const auto process = std::make_shared<WorkerProcess>(std::move(remembering));
+  const auto process = std::make_shared<WorkerProcess>(options, true);
   HttpResponse answer = process->ask(
       {.kind = Frame::job, .body = text_of(request), .stopped = [&stop] { return stop.load(); }, .report = report});
   if (answer.status != 200) throw AnsweredElsewhere(std::move(answer));

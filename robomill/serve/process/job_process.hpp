@@ -15,7 +15,7 @@ namespace robomill::serve {
 /// Runs a request that was checked in a process of its own, which lives on where the job judged a program, to answer
 /// with another γ.
 /// @throws Interrupted, AnsweredElsewhere with the error of the job, WorkerEnded
-[[nodiscard]] JobRun run_in_process(const WorkerProcess::Options& options, const JobRequest& request,
+[[nodiscard]] JobRun run_in_process(const WorkerOptions& options, const JobRequest& request,
                                     const Progress::Report& report, const std::atomic<bool>& stop);
 
 /// The request out of what run_in_process() sends.

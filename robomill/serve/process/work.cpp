@@ -39,8 +39,10 @@
 #include "robomill/serve/job_verbs.hpp"
 #include "robomill/serve/live_lobes.hpp"
 #include "robomill/serve/live_program.hpp"
+#include "robomill/serve/monitor_sessions.hpp"
 #include "robomill/serve/process/frames.hpp"
 #include "robomill/serve/process/job_process.hpp"
+#include "robomill/serve/process/monitor_service.hpp"
 #include "robomill/serve/serve.hpp"
 
 namespace robomill::serve {
@@ -51,12 +53,15 @@ struct Rights {
   std::filesystem::path root;
   std::uint64_t memory_bytes = 0;
   int threads = 0;
+  bool connects = false;
+  int last_id = 0;
 
-  /// As WorkerProcess says it: "MEMORY THREADS", a line's end, the root, whose name may be any bytes.
+  /// As WorkerProgram says it: "MEMORY THREADS CONNECTS LAST_ID", a line's end, the root, whose name may be any bytes.
   explicit Rights(const std::string& body) {
     const std::size_t line_end = std::min(body.find('\n'), body.size());
     std::istringstream numbers(body.substr(0, line_end));
-    if (!(numbers >> memory_bytes >> threads)) throw std::runtime_error("is started by a server, not by hand");
+    if (!(numbers >> memory_bytes >> threads >> connects >> last_id))
+      throw std::runtime_error("is started by a server, not by hand");
     root = body.substr(std::min(line_end + 1, body.size()));
   }
   void give_up_the_rest() const {
@@ -65,12 +70,16 @@ struct Rights {
     ::setrlimit(RLIMIT_CORE, &no_core);
     if (memory_bytes > 0) io::limit_own_memory(memory_bytes);
     set_thread_count(threads);
-    // Without Landlock the folder's Confinement remains.
-    static_cast<void>(
-        io::restrict_files({.readable = {"/usr/lib", "/usr/share/zoneinfo", "/lib", "/lib64", "/etc/ld.so.cache",
+    io::FileRights files = {.readable = {"/usr/lib", "/usr/share/zoneinfo", "/lib", "/lib64", "/etc/ld.so.cache",
                                          "/etc/localtime", "/proc/self", "/sys/devices/system"},
                             .writable = {root, "/dev/null"},
-                            .connects = false}));
+                            .connects = connects};
+    if (connects) {  // names of hosts, and certificates
+      for (const char* path : {"/etc", "/usr", "/run/systemd/resolve", "/run/resolvconf", "/dev/urandom"}) {
+        files.readable.emplace_back(path);
+      }
+    }
+    static_cast<void>(io::restrict_files(files));  // without Landlock the folder's Confinement remains
   }
 };
 
@@ -106,10 +115,16 @@ Frame next_frame(FrameReader& frames) {
 /// Answers one question after the other. A thread of its own listens meanwhile, for a word to stop.
 class Work {
  public:
-  Work(Rights rights, FrameReader frames)
+  Work(Rights rights, FrameReader frames, OpenStream open_stream)
       : rights_(std::move(rights)),
         folder_(rights_.root),
         confinement_(folder_.root()),
+        monitors_(
+            folder_, std::move(open_stream),
+            [this](std::string_view event, std::string_view data) {
+              send(Frame::event, fmt::format("{}\n{}", event, data));
+            },
+            rights_.last_id),
         listener_([this, frames = std::move(frames)]() mutable { listen(frames); }) {}
 
   [[noreturn]] void run() {
@@ -118,22 +133,23 @@ class Work {
       try {
         answer(asked);
       } catch (const std::exception&) {  // no memory for the answer
-        send(R"(500 {"error":{"text":"not enough memory for this"}})");
+        send(Frame::answer, R"(500 {"error":{"text":"not enough memory for this"}})");
       }
     }
   }
 
  private:
-  static void send(std::string_view answer) {
-    if (!send_frame(worker_socket, Frame::answer, answer)) end_now(0);
+  void send(char kind, std::string_view body) {
+    const std::lock_guard lock(sending_);
+    if (!send_frame(worker_socket, kind, body)) end_now(0);
   }
   void answer(const Frame& asked) {
     HttpResponse found = answer_of(folder_.root(), [&] { return answer_to(asked); });
     const std::string status = fmt::format("{} ", found.status);
     if (status.size() + found.body.size() > longest_answer) {
-      return send(R"(500 {"error":{"text":"the answer is longer than 256 MB"}})");
+      return send(Frame::answer, R"(500 {"error":{"text":"the answer is longer than 256 MB"}})");
     }
-    send(found.body.insert(0, status));
+    send(Frame::answer, found.body.insert(0, status));
   }
   [[noreturn]] void listen(FrameReader& frames) {
     try {
@@ -171,6 +187,8 @@ class Work {
         return check_text(folder_, asked.body);
       case Frame::inspect:
         return inspect_file(folder_, asked.body);
+      case Frame::monitors:
+        return monitors_.answer(http_request_of(asked.body));
       default:
         return error_response(500, "this is no question");
     }
@@ -206,13 +224,14 @@ class Work {
     if (task == task_ && now - told_ < pause) return;
     task_ = task;
     told_ = now;
-    static_cast<void>(send_frame(worker_socket, Frame::progress,
-                                 io::plain_text({{"task", task}, {"fraction", io::number(fraction)}})));
+    send(Frame::progress, io::plain_text({{"task", task}, {"fraction", io::number(fraction)}}));
   }
 
   Rights rights_;
   Folder folder_;
   io::Confinement confinement_;
+  std::mutex sending_;
+  MonitorSessions monitors_;
   LiveLobes lobes_;
   std::shared_ptr<const jobs::PlanResult> plan_;  ///< of the last job
   std::string task_;
@@ -226,7 +245,7 @@ class Work {
 
 }  // namespace
 
-int work_for_server() {
+int work_for_server(OpenStream open_stream) {
   int type = 0;
   socklen_t size = sizeof(type);
   if (::getsockopt(worker_socket, SOL_SOCKET, SO_TYPE, &type, &size) != 0) return 2;  // nobody who could ask
@@ -235,7 +254,7 @@ int work_for_server() {
     FrameReader frames(longest_question);
     const Rights rights(next_frame(frames).body);
     rights.give_up_the_rest();
-    Work work(rights, std::move(frames));
+    Work work(rights, std::move(frames), std::move(open_stream));
     work.run();
   } catch (const std::exception& error) {
     fmt::print(stderr, "robomill: {}\n", error.what());

@@ -26,7 +26,7 @@ std::string asked(WorkerProcess& process, const WorkerProcess::Question& questio
 }
 
 /// A shell's commands in the place of a worker; its socket is descriptor 3.
-WorkerProcess::Options shell(const std::string& commands) {
+WorkerOptions shell(const std::string& commands) {
   return {.command = {"/bin/sh", "-c", commands}, .root = "/"};
 }
 
@@ -39,7 +39,7 @@ TEST(WorkerProcess, SaysWhatItsProcessDiedOf) {
     const std::string said = asked(process, {.kind = Frame::job});
     EXPECT_NE(said.find(text), std::string::npos) << commands << ": " << said;
   }
-  WorkerProcess none({.command = {"/no/such/program"}, .root = "/"});
+  WorkerProcess none(WorkerOptions{.command = {"/no/such/program"}, .root = "/"});
   EXPECT_NE(asked(none, {.kind = Frame::job}).find("cannot be started"), std::string::npos);
 }
 
@@ -53,9 +53,7 @@ TEST(WorkerProcess, IsStartedAgainUnlessItRemembers) {
   WorkerProcess process(shell("exit 7"));
   EXPECT_NE(asked(process, {.kind = Frame::lobes}).find("exit code 7"), std::string::npos);
   EXPECT_NE(asked(process, {.kind = Frame::lobes}).find("exit code 7"), std::string::npos);
-  WorkerProcess::Options options = shell("exit 7");
-  options.remembers = true;
-  WorkerProcess remembers(options);
+  WorkerProcess remembers(shell("exit 7"), true);
   EXPECT_NE(asked(remembers, {.kind = Frame::lobes}).find("exit code 7"), std::string::npos);
   EXPECT_NE(asked(remembers, {.kind = Frame::lobes}).find("run it again"), std::string::npos);
 }
