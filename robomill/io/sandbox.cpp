@@ -9,7 +9,6 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -98,10 +97,6 @@ void limit_own_memory(std::uint64_t bytes) {
   if (sanitized) return;
   const rlimit memory{bytes, bytes};
   ::setrlimit(RLIMIT_DATA, &memory);
-}
-
-void offer_to_end_first() {
-  std::ofstream("/proc/self/oom_score_adj") << 500;
 }
 
 std::uint64_t machine_memory_bytes() {

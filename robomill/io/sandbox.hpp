@@ -28,9 +28,6 @@ void restrict_to_one_more_file();
 /// builds know no limit: their shadow memory is not told apart.
 void limit_own_memory(std::uint64_t bytes);
 
-/// Where the machine has no memory left, the kernel ends this process first.
-void offer_to_end_first();
-
 /// All memory of the machine [bytes]; 0 where the system does not say.
 [[nodiscard]] std::uint64_t machine_memory_bytes();
 

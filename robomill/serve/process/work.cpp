@@ -65,7 +65,6 @@ struct Rights {
     root = body.substr(std::min(line_end + 1, body.size()));
   }
   void give_up_the_rest() const {
-    io::offer_to_end_first();
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
     if (memory_bytes > 0) io::limit_own_memory(memory_bytes);
