@@ -9,8 +9,12 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
 #include <string_view>
+
+#include "robomill/io/sandbox.hpp"
+#include "robomill/io/sanitized.hpp"
 
 namespace robomill::io {
 namespace {
@@ -25,24 +29,15 @@ bool write_whole(int to, std::string_view bytes) {
   return true;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool sanitized = true;  // their shadow memory fills the address space
-#elif defined(__has_feature)
-constexpr bool sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool sanitized = false;
-#endif
-
-void limit_memory(std::size_t more_bytes) {
-  if (sanitized) return;
-  std::size_t pages = 0;
-  if (!(std::ifstream("/proc/self/statm") >> pages)) return;
-  const rlim_t most = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + more_bytes;
-  const rlimit memory{most, most};
-  ::setrlimit(RLIMIT_AS, &memory);
+/// Of the address space, which a child has from its parent; 0: none is known.
+std::uint64_t address_space_bytes() {
+  std::uint64_t pages = 0;
+  if (sanitized || !(std::ifstream("/proc/self/statm") >> pages)) return 0;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-[[noreturn]] void be_child(int to, std::size_t more_memory_bytes, const std::function<std::string()>& body) {
+[[noreturn]] void be_child(int to, rlim_t most_address_space, const std::function<std::string()>& body,
+                           const std::filesystem::path& readable) {
   int status = 1;
   // Whatever ends the parent ends the child; the parent's handlers would remove the parent's files.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
@@ -50,10 +45,20 @@ void limit_memory(std::size_t more_bytes) {
   try {
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    limit_memory(more_memory_bytes);
+    if (most_address_space > 0) {
+      const rlimit memory{most_address_space, most_address_space};
+      ::setrlimit(RLIMIT_AS, &memory);
+    }
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) ::signal(signal, SIG_DFL);
     const int nowhere = ::open("/dev/null", O_WRONLY);
-    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) {
+      ::dup2(nowhere, STDERR_FILENO);
+      ::close(nowhere);
+    }
+    FileRights rights = {.connects = false};
+    if (!readable.empty()) rights.readable.push_back(readable);
+    static_cast<void>(restrict_files(rights));
+    restrict_to_one_more_file();  // so that without Landlock too the file that is read leads to no other
     if (write_whole(to, body())) status = 0;
   } catch (...) {
     status = 1;
@@ -74,11 +79,14 @@ std::string read_whole(int from) {
 
 }  // namespace
 
-std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std::function<std::string()>& body) {
+std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std::function<std::string()>& body,
+                                        const std::filesystem::path& readable) {
+  // Here, since a program whose files are restricted may look at its own state, and not at its child's.
+  const std::uint64_t now = address_space_bytes();
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], more_memory_bytes, body);
+  if (child == 0) be_child(ends[1], now > 0 ? now + more_memory_bytes : 0, body, readable);
   ::close(ends[1]);
   std::string bytes = child > 0 ? read_whole(ends[0]) : std::string();
   ::close(ends[0]);

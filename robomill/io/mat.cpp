@@ -214,14 +214,15 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
   const std::lock_guard lock(library());
   // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
   // for gigabytes.
-  const auto packed = run_in_child(most_memory + 64 * file_bytes, [&]() -> std::string {
+  const auto read = [&]() -> std::string {
     try {
       if (is_hdf5(content)) require_self_contained_hdf5(path);
       return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
     } catch (const InvalidInput& error) {
       return rejected + error.parts().rule;
     }
-  });
+  };
+  const auto packed = run_in_child(most_memory + 64 * file_bytes, read, path);
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
   if (packed->front() == rejected) throw InvalidInput(path.string(), packed->substr(1));
   return unpack(std::string_view(*packed).substr(1));

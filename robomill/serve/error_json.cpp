@@ -1,6 +1,7 @@
 #include "robomill/serve/error_json.hpp"
 
 #include <charconv>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -8,10 +9,28 @@
 #include "robomill/base/progress.hpp"
 
 namespace robomill::serve {
-std::string client_text(std::string text, const std::filesystem::path& root) {
+std::string without_root(std::string text, const std::filesystem::path& root) {
+  if (root == root.root_path()) return text;  // all paths are below it, and "//" is in no path
   const std::string way = root.string() + "/";
-  for (std::size_t at = text.find(way); at != std::string::npos; at = text.find(way, at)) text.erase(at, way.size());
-  return printable(text);
+  std::size_t at = text.find(way);
+  if (at == std::string::npos) return text;
+  std::string out;  // built once: erased in place, a long text with many paths would be moved for each
+  std::size_t done = 0;
+  for (; at != std::string::npos; at = text.find(way, done)) {
+    out.append(text, done, at - done);
+    done = at + way.size();
+  }
+  return out.append(text, done, std::string::npos);
+}
+
+std::string client_text(std::string text, const std::filesystem::path& root) {
+  return printable(without_root(std::move(text), root));
+}
+
+io::Json AnsweredElsewhere::error() const {
+  const io::Json body = io::Json::parse(response_.body, nullptr, false);
+  if (body.is_object() && body.contains("error") && body["error"].is_object()) return body["error"];
+  return error_object(response_.body.substr(0, 200));
 }
 
 io::Json error_object(const InvalidInput& error, const std::filesystem::path& root) {
@@ -58,6 +77,8 @@ HttpResponse answer_of(const std::filesystem::path& root, const std::function<Ht
     return json_response({{"error", error_object(error, root)}}, 400);
   } catch (const Interrupted&) {
     return json_response({{"superseded", true}}, 409);
+  } catch (const AnsweredElsewhere& other) {
+    return other.response();
   } catch (const io::Json::exception& error) {
     return error_response(400, "the body is not the JSON that is expected: " + std::string(error.what()));
   } catch (const std::bad_alloc&) {

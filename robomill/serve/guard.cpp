@@ -71,6 +71,10 @@ bool Guard::has_access(const HttpRequest& request) const {
          cookie_for(request).has_value();
 }
 
+bool Guard::knows(const HttpRequest& request) const {
+  return is_own_host(request.header("host")) && has_access(request);
+}
+
 std::optional<std::string> Guard::cookie_for(const HttpRequest& request) const {
   const auto given = request.query.find("token");
   if (token_.empty() || request.path != "/" || given == request.query.end()) return std::nullopt;

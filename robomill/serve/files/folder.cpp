@@ -32,6 +32,15 @@ Folder::Folder(const fs::path& root) {
   }
 }
 
+void Folder::require_there() const {
+  std::error_code error;
+  const fs::directory_iterator content(root_, error);
+  if (!error) return;
+  const bool gone = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  throw InvalidInput("folder", gone ? "the folder that is served is gone" : "the folder that is served cannot be read",
+                     "Put it back and start robomill serve anew");
+}
+
 fs::path Folder::resolve(std::string_view relative) const {
   const auto reject = [&](const char* rule) {
     return InvalidInput("path", printable(std::string(relative)) + " " + rule);

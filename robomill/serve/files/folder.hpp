@@ -31,6 +31,8 @@ class Folder {
   explicit Folder(const std::filesystem::path& root);
 
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  /// @throws InvalidInput if the folder was taken away or cannot be read
+  void require_there() const;
   /// Where a relative path of a client's leads; there may be nothing yet.
   /// @throws InvalidInput if it is empty, absolute, has "..", a hidden part or a control character, or leads out of the
   ///     folder through a link

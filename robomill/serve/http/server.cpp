@@ -25,6 +25,7 @@
 #include <thread>
 
 #include "robomill/base/error.hpp"
+#include "robomill/serve/http/places.hpp"
 #include "robomill/serve/http/target.hpp"
 
 namespace robomill::serve {
@@ -40,6 +41,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr double write_s = 10.0;                                 ///< for a response, at a megabyte a second more
 constexpr double bytes_per_s = 1e6;                              ///< that a client must take or give at least
 constexpr double linger_s = 1.0;                                 ///< for a client to read its last response
+constexpr double proof_s = 1.0;                                  ///< for a header where places are few
 constexpr double heartbeat_s = 15.0;                             ///< of a stream
 constexpr std::size_t most_rejected = 256;                       ///< connections, at a time
 constexpr std::size_t most_queued_bytes = std::size_t{4} << 20;  ///< of a stream
@@ -56,16 +58,35 @@ HttpResponse failure(int status, std::string_view text) {
                               text)};
 }
 
+HttpResponse too_many_connections() {
+  HttpResponse response = failure(503, "too many connections; try later");
+  response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
 /// To a connection that is rejected.
 const std::string& busy() {
   static const std::string response = [] {
-    const std::string body = failure(503, "too many connections; try later").body;
+    const std::string body = too_many_connections().body;
     return fmt::format(
         "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nContent-Length: {}\r\n"
         "Retry-After: 1\r\nConnection: close\r\n\r\n{}",
         body.size(), body);
   }();
   return response;
+}
+
+/// The client that a connection comes from: a whole /64 of IPv6 addresses is one client's.
+std::string client_of(const Tcp::socket& socket) {
+  error_code error;
+  const asio::ip::address address = socket.remote_endpoint(error).address();
+  if (error) return {};
+  if (!address.is_v6()) return address.to_string();
+  const asio::ip::address_v6 six = address.to_v6();
+  if (six.is_v4_mapped()) return asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string();
+  asio::ip::address_v6::bytes_type bytes = six.to_bytes();
+  std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
+  return asio::ip::address_v6(bytes).to_string();
 }
 
 using Parser = http::request_parser<http::string_body>;
@@ -97,8 +118,11 @@ class Connection;
 
 /// What accepts and owns the connections.
 struct Listener : std::enable_shared_from_this<Listener> {
+  explicit Listener(HttpServer::Options wanted) : options(std::move(wanted)) {}
+
   HttpServer::Options options;
   HttpServer::Handlers handlers;
+  Places places{options.connections};
   std::size_t rejected = 0;  ///< connections; these are gone last
   asio::io_context io{1};
   Tcp::acceptor acceptor{io};
@@ -120,16 +144,25 @@ struct Listener : std::enable_shared_from_this<Listener> {
 /// A client: request, response, and again; or a stream of events. All of it on the server's thread.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Tcp::socket socket, Listener& server) : stream_(std::move(socket)), server_(server) {}
+  /// @param client, place  for server.places
+  Connection(Tcp::socket socket, Listener& server, std::string client, Places::Place place)
+      : stream_(std::move(socket)), server_(server), client_(std::move(client)), place_(place) {}
 
+  void begin() {
+    guarded([this] { read_header(); });
+  }
   void read_header() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(server_.options.header_bytes));
     parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // until the header says what it is for
-    stream_.expires_after(after(server_.options.header_s));
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      self->guarded([&] { self->header_read(error); });
-    });
+    if (buffer_.size() > 0) return read_rest_of_header();            // came with the request before
+    stream_.expires_after(after(header_s()));
+    stream_.async_read_some(buffer_.prepare(first_bytes),
+                            [self = shared_from_this()](error_code error, std::size_t count) {
+                              if (error) return self->close();
+                              self->buffer_.commit(count);
+                              self->guarded([&] { self->read_rest_of_header(); });
+                            });
   }
   void close() {
     error_code ignored;
@@ -154,6 +187,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
       close();
     }
   }
+  static constexpr std::size_t first_bytes = 4096;
+  [[nodiscard]] double header_s() const {
+    return place_ == Places::Place::reserved ? proof_s : server_.options.header_s;
+  }
+  void read_rest_of_header() {
+    stream_.expires_after(after(header_s()));
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      self->guarded([&] { self->header_read(error); });
+    });
+  }
   void header_read(error_code error) {
     if (error == http::error::header_limit || error == http::error::buffer_overflow) {
       return respond_and_close(failure(431, "the header is too long"));
@@ -168,6 +211,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return respond_and_close(failure(400, "this request cannot be understood"));
     }
     request_ = std::move(*request);
+    if (place_ == Places::Place::reserved && !is_known()) return respond_and_close(too_many_connections());
     const auto admitted = admit();
     if (const auto* answer = std::get_if<HttpResponse>(&admitted)) return respond_and_close(*answer);
     const std::uint64_t most = std::get<std::uint64_t>(admitted);
@@ -192,6 +236,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return failure(500, "an error in the server");
     }
   }
+  [[nodiscard]] bool is_known() const { return server_.handlers.knows && server_.handlers.knows(request_); }
   void body_read(error_code error) {
     if (error == http::error::body_limit) return respond_and_close(failure(413, "the body is too long"));
     if (error) return close();
@@ -307,11 +352,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     heart_.cancel();
     limit_.cancel();
     server_.streams.erase(shared_from_this());
-    if (server_.connections.erase(shared_from_this()) > 0) --server_.open;
+    if (server_.connections.erase(shared_from_this()) == 0) return;
+    --server_.open;
+    server_.places.leave(client_, place_);
   }
 
   beast::tcp_stream stream_;
   Listener& server_;
+  std::string client_;
+  Places::Place place_;
   beast::flat_buffer buffer_{std::size_t{1} << 16};
   std::optional<Parser> parser_;
   HttpRequest request_;
@@ -395,13 +444,21 @@ void Listener::accept() {
 }
 
 void Listener::take(Tcp::socket socket) {
-  if (connections.size() >= options.connections) return reject(std::move(socket));
+  const std::string client = client_of(socket);
+  const Places::Place place = places.take(client);
+  if (place == Places::Place::none) return reject(std::move(socket));
   error_code ignored;
   socket.set_option(Tcp::no_delay(true), ignored);
-  const auto connection = std::make_shared<Connection>(std::move(socket), *this);
-  connections.insert(connection);
+  std::shared_ptr<Connection> connection;
+  try {
+    connection = std::make_shared<Connection>(std::move(socket), *this, client, place);
+    connections.insert(connection);
+  } catch (const std::exception&) {
+    places.leave(client, place);
+    throw;
+  }
   ++open;
-  connection->read_header();
+  connection->begin();
 }
 
 /// 503, and a second to read it; beyond most_rejected the connection is only closed.
@@ -437,8 +494,7 @@ void Listener::stop() {
   io.stop();
 }
 
-HttpServer::HttpServer(Options options) : listener_(std::make_shared<Listener>()) {
-  listener_->options = std::move(options);
+HttpServer::HttpServer(Options options) : listener_(std::make_shared<Listener>(std::move(options))) {
   listener_->listen();
 }
 

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+
+namespace robomill::io {
+
+/// What may still be opened. Of a folder all below it; what is not there is left out.
+struct FileRights {
+  std::vector<std::filesystem::path> readable = {};
+  std::vector<std::filesystem::path> writable = {};  ///< read too
+  std::vector<std::filesystem::path> programs = {};  ///< read and started
+  bool connects = true;  ///< false: no TCP, and no signal to other programs, as far as the kernel can forbid them
+};
+
+/// From here on the calling thread, and the threads and programs that it starts, open no other file, whatever they are
+/// made to do: by Landlock, for ever. What is open already stays open.
+/// False where the kernel has no Landlock: nothing has changed then.
+ROBOMILL_API bool restrict_files(const FileRights& rights);
+
+/// From here on this process has one descriptor more than it has now, and so one file more at a time. It needs nothing
+/// of the kernel.
+void restrict_to_one_more_file();
+
+/// From here on this process may have so much memory of its own [bytes]; beyond it std::bad_alloc is thrown. Sanitized
+/// builds know no limit: their shadow memory is not told apart.
+void limit_own_memory(std::uint64_t bytes);
+
+/// All memory of the machine [bytes]; 0 where the system does not say.
+[[nodiscard]] std::uint64_t machine_memory_bytes();
+
+/// Files that this program and its libraries were loaded from.
+[[nodiscard]] std::vector<std::filesystem::path> loaded_files();
+
+}  // namespace robomill::io
