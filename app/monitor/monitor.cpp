@@ -250,7 +250,7 @@ class Outlets {
     }
     if (recorder_) {
       out.samples = [this](std::span<const float> samples) { recorder_->add(samples); };
-      out.skipped = [this](std::uint64_t frames) { recorder_->skip(frames); };
+      out.skipped = [this](std::uint64_t frames, monitor::BlindReason why) { recorder_->skip(frames, why); };
       out.silent = [this](double seconds) { recorder_->silent(seconds); };
     }
     return out;
