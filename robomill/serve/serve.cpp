@@ -56,7 +56,7 @@ void ServeOptions::validate() const {
   if (!token.empty() && (token.size() < least_token || !plain)) {
     throw InvalidInput("token", fmt::format("must be {} or more letters, digits, - or _", least_token));
   }
-  if (!is_loopback(host) && token.empty()) {
+  if (!is_loopback(host_address(host)) && token.empty()) {
     throw InvalidInput("host", fmt::format("{} can be reached from other machines and needs a token", host),
                        "Give --token TEXT, or leave --host out");
   }
@@ -66,7 +66,7 @@ struct Server::Parts {
   explicit Parts(const ServeOptions& options)
       : folder(options.folder),
         confinement(folder.root()),
-        host(options.host),
+        host(host_address(options.host)),
         token(options.token),
         guard(host, token) {}
   /// Also where the constructor of Server fails: jobs and streams of api publish until they are gone.
@@ -118,7 +118,7 @@ Server::Server(const ServeOptions& options) {
   parts_ = std::make_unique<Parts>(options);
   Parts& parts = *parts_;
   parts.http = std::make_unique<HttpServer>(
-      HttpServer::Options{.host = options.host, .port = options.port, .headers = safe_headers});
+      HttpServer::Options{.host = parts.host, .port = options.port, .headers = safe_headers});
   parts.guard.set_port(parts.http->port());
   parts.page = page::app_html(parts.folder.root().filename().string(), parts.guard.write_token());
   parts.outlet = parts.http.get();
