@@ -315,8 +315,9 @@ void CommandLine::add_machine_verbs() {
   sub->add_option("folder", options.folder, "what is served, and nothing outside it (default: the current folder)");
   sub->add_option("--port", options.port, "to listen at; 0: any that is free (default: 8437)")
       ->check(whole_number(0, 65535));
-  sub->add_option("--host", options.host,
-                  "address to listen at, or localhost (default: 127.0.0.1); another machine's needs --token");
+  sub->add_option(
+      "--host", options.host,
+      "address to listen at, or localhost (default: 127.0.0.1); one that other machines reach needs --token");
   sub->add_option("--token", options.token, "that whoever asks must know: 16 or more letters and digits");
   sub->add_option("--job-memory-mb", serve.job_memory_mb, "that a job may have (default: half the machine's)")
       ->check(whole_number(100, 100'000'000));

@@ -146,6 +146,19 @@ TEST_F(Signals, TemporaryFilesGo) {
   }
 }
 
+// As `| head` does: whoever reads the summary goes.
+TEST_F(Signals, ABrokenPipeLeavesNothingBehind) {
+  write("monitor.toml", "[signal]\nsample_rate_hz = 1000\nchannels = [1]\n");
+  std::string rows;
+  for (int i = 0; i < 200'000; ++i) rows += i % 4000 < 2000 ? "0\n" : std::to_string(i * 7919 % 101) + "\n";
+  write("rec.csv", rows);  // a signal that comes and goes: an event each time, and a line of it
+  const Ended run = shell("{ env --default-signal=PIPE '" ROBOMILL_PROGRAM
+                          "' monitor monitor.toml --input rec.csv -o result.jsonl; echo $? >exit.txt; } | true");
+  EXPECT_EQ(slurp(folder_.at("exit.txt")), "141\n") << run.err;
+  EXPECT_EQ(names(".result"), std::vector<std::string>());
+  EXPECT_EQ(names("result"), std::vector<std::string>());
+}
+
 // As after nohup, or in the background of a script.
 TEST_F(Signals, WhatTheCallerIgnoresIsIgnored) {
   write_slow_smoothing();

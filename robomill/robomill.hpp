@@ -82,6 +82,7 @@
 #include "robomill/live/hop_queue.hpp"
 #include "robomill/live/inputs.hpp"
 #include "robomill/live/intake.hpp"
+#include "robomill/live/load.hpp"
 #include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/live/path_actuator.hpp"

@@ -24,10 +24,11 @@ auto retried(const Call& call) noexcept {
   return result;
 }
 
+/// @param done  becomes how many are written
 /// @param some  writes a part of the bytes, of which so many are written, and returns how many
 template <class Some>
-int write_parts(std::string_view bytes, const Some& some) noexcept {
-  std::size_t done = 0;
+int write_parts(std::string_view bytes, std::size_t& done, const Some& some) noexcept {
+  done = 0;
   while (done < bytes.size()) {
     const ssize_t count = retried([&] { return some(bytes.data() + done, bytes.size() - done, done); });
     if (count < 0) return errno;
@@ -68,12 +69,18 @@ Descriptor open_descriptor(const char* path, int flags, int& error) noexcept {
 }
 
 int write_all(int to, std::string_view bytes) noexcept {
-  return write_parts(bytes,
-                     [to](const char* part, std::size_t count, std::size_t) { return ::write(to, part, count); });
+  std::size_t count = 0;
+  return write_all(to, bytes, count);
+}
+
+int write_all(int to, std::string_view bytes, std::size_t& count) noexcept {
+  return write_parts(bytes, count,
+                     [to](const char* part, std::size_t size, std::size_t) { return ::write(to, part, size); });
 }
 
 int write_all_at(int to, std::string_view bytes, std::uint64_t offset) noexcept {
-  return write_parts(bytes, [to, offset](const char* part, std::size_t count, std::size_t done) {
+  std::size_t written = 0;
+  return write_parts(bytes, written, [to, offset](const char* part, std::size_t count, std::size_t done) {
     return ::pwrite(to, part, count, static_cast<off_t>(offset + done));
   });
 }

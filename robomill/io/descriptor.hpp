@@ -36,6 +36,8 @@ class Descriptor {
 [[nodiscard]] Descriptor open_descriptor(const char* path, int flags, int& error) noexcept;
 
 [[nodiscard]] int write_all(int to, std::string_view bytes) noexcept;
+/// @param count  becomes how many of them were written
+[[nodiscard]] int write_all(int to, std::string_view bytes, std::size_t& count) noexcept;
 [[nodiscard]] int write_all_at(int to, std::string_view bytes, std::uint64_t offset) noexcept;
 /// @param count  becomes how many bytes there were, less than asked at the file's end
 [[nodiscard]] int read_all_at(int from, std::span<char> bytes, std::uint64_t offset, std::size_t& count) noexcept;

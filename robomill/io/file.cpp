@@ -219,12 +219,13 @@ void PendingFile::commit() {
   require_success(path_, synchronise_folder(path_.parent_path()));
 }
 
-LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(live) {
+LineFile::LineFile(fs::path path) : path_(std::move(path)) {
   require_inside(path_);
   require_regular_if_confined(path_);
-  if (!is_special(path_)) pending_.emplace(path_);
-  if (live) pending_.reset();  // it has checked the place
-  if (pending_) return;
+  if (!is_special(path_)) {
+    pending_.emplace(path_);
+    return;
+  }
   file_.open(path_, std::ios::binary | std::ios::trunc);
   if (!file_) reject(path_, "cannot be written");
 }
@@ -232,7 +233,6 @@ LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(liv
 bool LineFile::write(std::string_view line) {
   if (pending_) return pending_->write_at(pending_->size(), line);
   file_.write(line.data(), static_cast<std::streamsize>(line.size()));
-  if (live_) file_.flush();
   return file_.good();
 }
 

@@ -45,8 +45,8 @@ ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view
 ROBOMILL_API bool remove_file(const std::filesystem::path& path);
 
 /// A file that appears whole or not at all: it is written under a temporary name beside its place, made durable and
-/// renamed. It goes away unless committed. All that robomill writes is written here, what libraries write by their
-/// callbacks (write_at), so that no failure of the system is missed.
+/// renamed. It goes away unless committed. All that robomill writes, but for logs, is written here, what libraries
+/// write by their callbacks (write_at), so that no failure of the system is missed.
 class PendingFile {
  public:
   /// @throws InvalidInput if the folder is missing, path is one, or it cannot be written
@@ -89,12 +89,12 @@ class PendingFile {
   int error_ = 0;  ///< errno of the first failure
 };
 
-/// A file written line by line, of which each line is there at once where it is live; else it appears whole when it is
-/// closed, or not at all. A device or a pipe is written through.
+/// A file written line by line that appears whole when it is closed, or not at all. A device or a pipe is written
+/// through.
 class LineFile {
  public:
   /// @throws InvalidInput if the place cannot be written
-  LineFile(std::filesystem::path path, bool live);
+  explicit LineFile(std::filesystem::path path);
   /// A text with its line's end. False where it could not be written.
   bool write(std::string_view line);
   /// @throws InvalidInput if something could not be written
@@ -102,7 +102,6 @@ class LineFile {
 
  private:
   std::filesystem::path path_;
-  bool live_;
   std::optional<PendingFile> pending_;
   std::ofstream file_;
 };

@@ -142,23 +142,23 @@ TEST(File, WritesThroughLinksAndIntoDevices) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST(LineFile, IsWholeAtTheEndOrThereLineByLine) {
+TEST(LineFile, IsWholeAtTheEnd) {
   const Folder folder;
-  for (const bool live : {false, true}) {
-    const fs::path path = folder.file("lines.jsonl", "old");
-    LineFile file(path, live);
+  const fs::path path = folder.file("lines.jsonl", "old");
+  {
+    LineFile file(path);
     EXPECT_TRUE(file.write("1\n"));
-    EXPECT_EQ(read_file(path), live ? "1\n" : "old");
+    EXPECT_EQ(read_file(path), "old");
     EXPECT_TRUE(file.write("2\n"));
     file.close();
     EXPECT_EQ(read_file(path), "1\n2\n");
     EXPECT_EQ(folder.count(), 1u);
   }
-  const fs::path path = folder.file("lines.jsonl", "old");
-  { EXPECT_TRUE(LineFile(path, false).write("half")); }
-  EXPECT_EQ(read_file(path), "old");
-  EXPECT_NE(rejection([&] { LineFile(folder.at("no/where"), true); }).find("There is no folder"), std::string::npos);
-  LineFile full("/dev/full", false);
+  { EXPECT_TRUE(LineFile(path).write("half")); }
+  EXPECT_EQ(read_file(path), "1\n2\n");
+  EXPECT_EQ(folder.count(), 1u);
+  EXPECT_NE(rejection([&] { LineFile(folder.at("no/where")); }).find("There is no folder"), std::string::npos);
+  LineFile full("/dev/full");
   EXPECT_TRUE(full.write("lost\n"));
   EXPECT_EQ(rejection([&] { full.close(); }), "/dev/full: could not be written to its end. Is the disk full?");
 }

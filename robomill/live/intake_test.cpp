@@ -60,9 +60,24 @@ TEST(Intake, LeavesWholeHopsOutAndSaysSo) {
   ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
   EXPECT_EQ(hop.samples, ramp(50, 10));
   EXPECT_EQ(hop.frames_before, 20U);
+  EXPECT_TRUE(hop.dropped);
   intake.add(ramp(60, 10));
   ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
   EXPECT_EQ(hop.frames_before, 0U);
+  EXPECT_FALSE(hop.dropped);
+}
+
+TEST(HopQueue, SaysForHowLongNothingWasTaken) {
+  HopQueue queue(3);
+  const auto later = [] { return std::chrono::steady_clock::now() + milliseconds(5000); };
+  EXPECT_EQ(queue.stalled_s(later()), 0.0);  // there is nothing to do
+  Hop hop{.samples = ramp(0, 1)};
+  ASSERT_TRUE(queue.offer(hop));
+  EXPECT_NEAR(queue.stalled_s(later()), 5.0, 4.0);
+  ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
+  EXPECT_NEAR(queue.stalled_s(later()), 5.0, 4.0);  // at work on it
+  ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::nothing);
+  EXPECT_EQ(queue.stalled_s(later()), 0.0);
 }
 
 // A fast thread against a slow one: every frame is received or reported as missing.

@@ -9,6 +9,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
+#include "robomill/base/units.hpp"
 
 // Method: robomill/monitor/README.md, "Method"
 
@@ -41,11 +42,14 @@ enum class BlindReason {
   no_signal,
   clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
   speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's
-  gap             ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
+  gap,            ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
+  standstill,     ///< the spindle turns slower than MonitorOptions::min_speed_rad_per_s
+  overloaded      ///< a session's: its decisions are more than a second behind the samples, or hops were left out
 };
 /// Those that are one.
-inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal, BlindReason::clipped,
-                                                BlindReason::speed_unknown, BlindReason::gap};
+inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal,     BlindReason::clipped,
+                                                BlindReason::speed_unknown, BlindReason::gap,
+                                                BlindReason::standstill,    BlindReason::overloaded};
 /// Chatter synchronous with the spindle. It is detected by the power of a multiple of rotation against what was learnt
 /// of it.
 enum class SynchronousChatter {
@@ -72,11 +76,13 @@ struct ROBOMILL_API MonitorOptions {
   int pulses_per_revolution = 1;         ///< of the tachometer or encoder; in [1, 10000]
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
   double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
-  int teeth = 0;                         ///< in [0, 64]; 0: unknown
-  double window_s = 0.05;                ///< energy-entropy: of the transform; at least 32 samples and one hop
-  double hop_s = 0.025;                  ///< between decisions; at least 16 samples
-  int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
-  Entropy entropy = Entropy::energy;     ///< energy-entropy
+  /// Below it the spindle stands still: BlindReason::standstill. In [1, 100000] rpm; a hint is none or above it.
+  double min_speed_rad_per_s = 30.0 * units::rpm;
+  int teeth = 0;                      ///< in [0, 64]; 0: unknown
+  double window_s = 0.05;             ///< energy-entropy: of the transform; at least 32 samples and one hop
+  double hop_s = 0.025;               ///< between decisions; at least 16 samples
+  int bands = 16;                     ///< equal, from 0 to half the sample rate; in [2, 64]
+  Entropy entropy = Entropy::energy;  ///< energy-entropy
   /// energy-entropy: finite, required there; chatter where Decision::energy_entropy > threshold (alarm_below: <). It
   /// holds for one form, unit and sensor, and calibrate() sets it.
   double threshold = std::numeric_limits<double>::quiet_NaN();
@@ -121,6 +127,8 @@ struct Decision {
 /// Nothing throws, and nothing is allocated, after construction. Not to be used by two threads at once.
 class ROBOMILL_API ChatterMonitor {
  public:
+  static constexpr double look_back_s = 0.3;  ///< of the stream: the default detector's longest window
+
   /// @throws InvalidInput naming an option that is out of range
   explicit ChatterMonitor(const MonitorOptions& options);
   ~ChatterMonitor();
@@ -134,9 +142,10 @@ class ROBOMILL_API ChatterMonitor {
   Decision push(std::span<const float> samples) noexcept;
   /// Frames still wanted for the next decision; who pushes no more than these sees every one.
   [[nodiscard]] std::size_t frames_to_next_decision() const noexcept;
-  /// A new hint [rad/s]; 0, negative or not finite: unknown.
+  /// A new hint [rad/s]. Below MonitorOptions::min_speed_rad_per_s, 0 too, the spindle stands still until the next one,
+  /// and the hint before stays; negative or not finite: unknown.
   void set_spindle_speed(double rad_per_s) noexcept;
-  /// As after construction; the last hint stays.
+  /// As after construction; the last hint stays, and so does a spindle that stands still.
   void reset() noexcept;
   [[nodiscard]] const MonitorOptions& options() const noexcept;
 

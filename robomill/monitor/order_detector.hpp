@@ -19,6 +19,7 @@ class OrderDetector final : public Detector {
 
  private:
   void high_pass(const Hop& hop) noexcept;
+  void report_speed(const CutTests::Verdict& orders, Decision& decision) noexcept;
   void report_bands(std::uint64_t bad_channels, Decision& decision) noexcept;
   void doubt_the_sample_rate(const CutTests::Verdict& orders, Decision& decision) noexcept;
 

@@ -77,6 +77,14 @@ TEST(Guard, AccessTokenByAddressCookieOrHeader) {
   EXPECT_EQ(status(guard, page), 401);
 }
 
+TEST(Guard, LocalhostIsAnAddress) {
+  EXPECT_EQ(host_address("localhost"), "127.0.0.1");
+  EXPECT_EQ(host_address("192.168.1.2"), "192.168.1.2");
+  EXPECT_TRUE(is_own_host("localhost:9110", "127.0.0.1", 9110));
+  EXPECT_FALSE(is_own_host("evil.example:9110", "127.0.0.1", 9110));
+  EXPECT_TRUE(is_own_host("mill.local:9110", "0.0.0.0", 9110));
+}
+
 TEST(Guard, Loopback) {
   EXPECT_TRUE(is_loopback("127.0.0.1"));
   EXPECT_TRUE(is_loopback("::1"));

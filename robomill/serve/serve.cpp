@@ -50,10 +50,6 @@ std::optional<HttpResponse> page_file(const std::string& path) {
 }
 
 /// The one name that is no address.
-std::string address_of(const std::string& host) {
-  return host == "localhost" ? "127.0.0.1" : host;
-}
-
 WorkerOptions worker_of(const ServeOptions& options, const Folder& folder) {
   return {.command = options.worker,
           .root = folder.root(),
@@ -70,7 +66,7 @@ void ServeOptions::validate() const {
   if (!token.empty() && (token.size() < least_token || !plain)) {
     throw InvalidInput("token", fmt::format("must be {} or more letters, digits, - or _", least_token));
   }
-  if (!is_loopback(address_of(host)) && token.empty()) {
+  if (!is_loopback(host_address(host)) && token.empty()) {
     throw InvalidInput("host", fmt::format("{} can be reached from other machines and needs a token", host),
                        "Give --token TEXT, or leave --host out");
   }
@@ -80,7 +76,7 @@ struct Server::Parts {
   explicit Parts(const ServeOptions& options)
       : folder(options.folder),
         confinement(folder.root()),
-        host(address_of(options.host)),
+        host(host_address(options.host)),
         token(options.token),
         guard(host, token) {}
   /// Also where the constructor of Server fails: jobs and streams of api publish until they are gone.

@@ -346,6 +346,13 @@ TEST(ServeTest, SaysThatAPortIsTaken) {
   const Server server({.folder = place.path(), .port = 0});  // the bounds are free again
 }
 
+TEST(ServeTest, LocalhostIsThisMachine) {
+  const test::Folder place;
+  const Server server({.folder = place.path(), .host = "localhost", .port = 0});
+  EXPECT_EQ(server.address(), "http://127.0.0.1:" + std::to_string(server.port()) + "/");
+  EXPECT_EQ(test::http_ask(server.port(), "GET", "/").status, 200);
+}
+
 TEST(ServeOptionsTest, OtherMachinesNeedAToken) {
   const test::Folder place;
   EXPECT_NE(rejection([&] {
@@ -359,8 +366,8 @@ TEST(ServeOptionsTest, OtherMachinesNeedAToken) {
             std::string::npos);
   EXPECT_NE(
       rejection([&] {
-        const Server server({.folder = place.path(), .host = "mill.example", .port = 0, .token = "abcdefghijklmnop"});
-      }).find("must be an address"),
+        const Server server({.folder = place.path(), .host = "mill.local", .port = 0, .token = "abcdefghijklmnop"});
+      }).find("host = mill.local; must be an address of this machine, as 127.0.0.1, or localhost"),
       std::string::npos);
   {
     const Server here({.folder = place.path(), .host = "localhost", .port = 0});

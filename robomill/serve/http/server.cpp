@@ -408,7 +408,13 @@ class RejectedConnection : public std::enable_shared_from_this<RejectedConnectio
 void Listener::listen() {
   error_code error;
   const asio::ip::address address = asio::ip::make_address(options.host, error);
-  if (error) throw InvalidInput("host", "must be an address of this machine, as 127.0.0.1", options.host);
+  if (error) {
+    throw InvalidInput(
+        InvalidInput::Parts{.field = "host",
+                            .value = options.host,
+                            .rule = "must be an address of this machine, as 127.0.0.1, or localhost",
+                            .hint = "Names are not looked up: give the address that this one stands for"});
+  }
   const Tcp::endpoint endpoint(address, static_cast<std::uint16_t>(options.port));
   const auto step = [&](const char* what) {
     if (!error) return;

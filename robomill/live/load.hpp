@@ -1,0 +1,39 @@
+#pragma once
+#include <chrono>
+
+#include "robomill/live/hop_queue.hpp"
+
+// Method: robomill/live/README.md, "Method"
+
+namespace robomill::live {
+
+/// Whether decisions keep up with the samples. From the first hop that waited on, the clock's time is compared with the
+/// stream's, until the queue is empty: a source that is kept waiting, and runs faster than its samples were taken, is
+/// not late. Used by the thread that takes the hops.
+class Load {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// By how much decisions may be behind the samples.
+  static constexpr double longest_s = 1.0;
+
+  /// @param by_clock  whether samples come by the clock; otherwise none is late
+  explicit Load(bool by_clock) : by_clock_(by_clock) {}
+  /// A hop was taken out of the queue.
+  /// @param stream_s  where it begins; what was left out before it counts
+  /// @param drained   nothing else waits
+  void take(const Hop& hop, double stream_s, bool drained, Clock::time_point now);
+  /// Nothing was taken for longer than longest_s.
+  void stalled() { overloaded_ = true; }
+  /// Decisions are late, or hops were left out; until the queue is empty and all that a decision looks back at came.
+  [[nodiscard]] bool overloaded() const { return overloaded_; }
+  [[nodiscard]] double behind_s() const { return behind_s_; }
+
+ private:
+  bool by_clock_;
+  bool overloaded_ = false, drained_ = true;
+  Clock::time_point from_ = {};  ///< when the first hop came that waited …
+  double from_s_ = 0.0;          ///< … and where it began
+  double behind_s_ = 0.0, whole_from_s_ = 0.0;
+};
+
+}  // namespace robomill::live
