@@ -9,6 +9,7 @@
 
 #include "help.hpp"
 #include "options.hpp"
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
@@ -75,6 +76,8 @@ CLI::App* CommandLine::verb(const char* name, const char* description, std::func
   sub->add_flag("--quiet", common.quiet, "no summary and no progress");
   sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(whole_number(1));
   sub->add_option("--seed", common.seed, "seed of every random number (default: 1)")->check(unsigned_number());
+  sub->add_flag("--allow-large", common.allow_large,
+                "do what takes more than 10 minutes of one core or 2 GB, instead of rejecting it before it begins");
   sub->callback([this, run = std::move(run)] { chosen = run; });
   return sub;
 }
@@ -302,7 +305,7 @@ void CommandLine::add_machine_verbs() {
   add_posture(sub, plan.posture_deg);
 
   sub = verb("serve", "the page of a folder, over HTTP", [this](Progress& p) { return run(serve, common, p); });
-  sub->remove_option(sub->get_option("--report"));
+  for (const char* const option : {"--report", "--allow-large"}) sub->remove_option(sub->get_option(option));
   serve::ServeOptions& options = serve.options;
   sub->add_option("folder", options.folder, "what is served, and nothing outside it (default: the current folder)");
   sub->add_option("--port", options.port, "to listen at; 0: any that is free (default: 8437)")
@@ -335,6 +338,7 @@ int run_chosen(int argc, char** argv) {
   try {
     require_report_place(line.common.report);
     set_thread_count(line.common.threads);
+    if (line.common.allow_large) set_cost_limit(no_cost_limit);
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
   } catch (const InvalidInput& error) {
