@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/modal/fitting/fit_hybrid.hpp"
 #include "robomill/modal/fitting/fit_parts.hpp"
@@ -281,6 +282,31 @@ void FitOptions::validate() const {
   }
 }
 
+namespace {
+
+/// The swarm looks at every line for each particle in each round; the poles at every line for each two orders.
+void require_affordable_fit(const FrfSet& used, const FitOptions& options) {
+  constexpr double operations_of_value = 0.5, usual_particles = 400.0, usual_iterations = 1000.0;
+  const double values = static_cast<double>(used.frequency_hz.size()) * static_cast<double>(used.frfs.size());
+  const double modes = options.modes > 0 ? options.modes : 8.0;
+  const double particles = options.pso_particles, iterations = options.pso_max_iterations;
+  const bool swarm = options.method == FitMethod::pso;
+  const double orders = options.lscf_max_order;
+  require_affordable(
+      {.operations = swarm ? operations_of_value * modes * values * particles * iterations
+                           : values * (orders * orders + 2e3 * modes),
+       .bytes = swarm ? 100.0 * modes * particles + 8.0 * iterations : 16.0 * 10.0 * values,
+       .dominant =
+           swarm ? dominant_of(
+                       {{.field = "pso_particles", .value = particles, .times_usual = particles / usual_particles},
+                        {.field = "pso_max_iterations",
+                         .value = iterations,
+                         .times_usual = iterations / usual_iterations}})
+                 : CostDriver{.field = "lines", .value = static_cast<double>(used.frequency_hz.size())}});
+}
+
+}  // namespace
+
 FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& progress) {
   options.validate();
   set.validate();
@@ -291,6 +317,7 @@ FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& prog
   result.band_low_hz = band.frequency_hz(0);
   result.band_high_hz = band.frequency_hz(result.lines - 1);
   const FrfSet used = without_zeros(band, result.warnings);
+  require_affordable_fit(used, options);
   if (options.method == FitMethod::pso) {
     fit_by_swarm(result, used, options, progress);
   } else {
