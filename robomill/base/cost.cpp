@@ -35,11 +35,12 @@ std::string size_text(double bytes) {
 }  // namespace
 
 CostDriver dominant_of(std::initializer_list<CostDriver> drivers) {
-  const CostDriver* most = drivers.begin();
+  CostDriver most;
   for (const CostDriver& driver : drivers) {
-    if (driver.times_usual > most->times_usual) most = &driver;
+    if (driver.field.empty()) continue;
+    if (most.field.empty() || driver.times_usual > most.times_usual) most = driver;
   }
-  return most == drivers.end() ? CostDriver{} : *most;
+  return most;
 }
 
 void set_cost_limit(const CostLimit& limit) {

@@ -5,7 +5,7 @@
 
 #include "robomill/base/export.hpp"
 
-// Method: robomill/base/README.md, "Cost"
+// Method: robomill/base/README.md, "Method"
 
 namespace robomill {
 
@@ -17,7 +17,7 @@ struct CostDriver {
   double times_usual = 1.0;  ///< what it multiplies the cost by, over a usual value of it
 };
 
-/// The one that makes the cost what it is; the first of equal ones.
+/// The one that makes the cost what it is; the first of equal ones. One without a field is nobody's to change.
 [[nodiscard]] ROBOMILL_API CostDriver dominant_of(std::initializer_list<CostDriver> drivers);
 
 /// What a computation is about to take, known before it runs; within a factor of about three.

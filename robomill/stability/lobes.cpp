@@ -160,7 +160,14 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
   checked.spindle_speed_rad_per_s = {1.0, 2.0};
   checked.validate();
   for (const double speed : spindle_speeds_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", speed);
-  require_affordable(cost_of_looks(problem, options, spindle_speeds_rad_per_s, {.a_speed = looks_a_limit}));
+  constexpr double usual_speeds = 200.0;
+  const auto speeds = static_cast<double>(spindle_speeds_rad_per_s.size());
+  require_affordable(cost_of_looks(problem, options, spindle_speeds_rad_per_s,
+                                   {.a_speed = looks_a_limit,
+                                    .counted = {.field = "spindle_speeds_rad_per_s",
+                                                .value = speeds,
+                                                .unit = "speeds",
+                                                .times_usual = speeds / usual_speeds}}));
   if (in_frequency_domain(options.method)) {
     return frequency_limits(problem, options, spindle_speeds_rad_per_s, progress);
   }
