@@ -37,6 +37,7 @@ CLI::IsMember one_of_words(const Name<Value> (&names)[n]) {
 struct CommandLine {
   CLI::App parser{"robomill keeps a milling robot out of chatter: hammer hits to safe cutting conditions.", "robomill"};
   Common common;
+  bool allow_large = false;  ///< work that takes long or much memory is not rejected before it begins
   InitCommand init;
   FrfCommand frf;
   ModesCommand modes;
@@ -76,7 +77,7 @@ CLI::App* CommandLine::verb(const char* name, const char* description, std::func
   sub->add_flag("--quiet", common.quiet, "no summary and no progress");
   sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(whole_number(1));
   sub->add_option("--seed", common.seed, "seed of every random number (default: 1)")->check(unsigned_number());
-  sub->add_flag("--allow-large", common.allow_large,
+  sub->add_flag("--allow-large", allow_large,
                 "do what takes more than 10 minutes of one core or 2 GB, instead of rejecting it before it begins");
   sub->callback([this, run = std::move(run)] { chosen = run; });
   return sub;
@@ -338,7 +339,7 @@ int run_chosen(int argc, char** argv) {
   try {
     require_report_place(line.common.report);
     set_thread_count(line.common.threads);
-    if (line.common.allow_large) set_cost_limit(no_cost_limit);
+    if (line.allow_large) set_cost_limit(no_cost_limit);
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
   } catch (const InvalidInput& error) {

@@ -22,7 +22,6 @@ struct Common {
   std::filesystem::path report;  ///< .html or .json; empty: none
   bool quiet = false;
   int threads = 0;
-  bool allow_large = false;  ///< work that takes long or much memory is not rejected before it begins
   std::uint64_t seed = jobs::default_seed;
 
   [[nodiscard]] bool to_stdout() const { return output == "-"; }

@@ -9,7 +9,7 @@
 #include "robomill/base/error.hpp"
 
 namespace robomill {
-namespace {
+namespace cost_test {
 
 /// Puts the process' limit back.
 class CostTest : public testing::Test {
@@ -60,5 +60,5 @@ TEST_F(CostTest, BlamesWhatIsFarthestFromUsual) {
   EXPECT_EQ(most.unit, "Hz");
 }
 
-}  // namespace
+}  // namespace cost_test
 }  // namespace robomill

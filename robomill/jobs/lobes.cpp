@@ -16,7 +16,7 @@ namespace robomill::jobs {
 namespace {
 
 /// The chart and what the file asks for beside it.
-void compute(const LobesJob& job, LobesJobResult& result, Progress& progress) {
+void compute_asked(const LobesJob& job, LobesJobResult& result, Progress& progress) {
   LobesFile& cut = result.cut;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
     if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
@@ -53,7 +53,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   }
   cut.options.points = job.points;
   cut.uncertainty.seed = job.seed;
-  with_words_of(cut, [&] { compute(job, result, progress); });
+  with_words_of(cut, [&] { compute_asked(job, result, progress); });
   return result;
 }
 

@@ -255,7 +255,7 @@ double operations_of_small_vibration(const Job& job, std::size_t elements) {
 }
 
 /// What decides how fine the steps are, or how many there are.
-CostDriver dominant(const Job& job, const SimulationOptions& options) {
+CostDriver dominant_driver(const Job& job, const SimulationOptions& options) {
   constexpr double usual_s = 2.0, usual_rate_hz = 10240.0, usual_hz = 1000.0, usual_rad_per_s = 400.0,
                    usual_steps = 2000.0;
   double fastest = 0.0;
@@ -289,7 +289,7 @@ Cost cost_of(const Job& job, const SimulationOptions& options, bool run) {
   constexpr double bytes_of_node = 40.0;
   Cost cost = {.operations = operations_of_small_vibration(job, elements),
                .bytes = 2.0 * steps_per_revolution * bytes_of_node * static_cast<double>(model.rings.size()),
-               .dominant = dominant(job, options)};
+               .dominant = dominant_driver(job, options)};
   if (!run) return cost;
   // Steps are doubled once in most cuts. A sample has nine numbers, here and in the result, and its line of a file; a
   // period leaves its looks, a tooth its pass of a wall.

@@ -90,7 +90,7 @@ void require_affordable_chart(const LobesProblem& problem, const LobesOptions& o
     looks.bytes = 9.0 * nodes;
   }
   Cost cost = cost_of_looks(problem, options, even(options.spindle_speed_rad_per_s, options.grid[0]), looks);
-  add_points(problem, options, cost);
+  add_cost_of_points(problem, options, cost);
   require_affordable(cost);
 }
 

@@ -18,11 +18,11 @@
 namespace robomill::stability::detail {
 namespace {
 
-constexpr double us = 1e3;  // operations of a microsecond
-constexpr double nodes = 8.0;
+constexpr double of_us = 1e3;  // operations of a microsecond
+constexpr double nodes_of_piece = 8.0;
 
 /// A structure as far as it costs.
-struct Structure {
+struct CostlyStructure {
   double modes = 0.0;
   double fastest_rad_per_s = 0.0;      ///< of its modes
   double counting_rad_per_s = 0.0;     ///< of those whose resonance is not below a thousandth of the highest
@@ -31,8 +31,8 @@ struct Structure {
   double frequency_hz = 0.0;
 };
 
-Structure structure_of(const LobesProblem& problem) {
-  Structure out;
+CostlyStructure costly_structure(const LobesProblem& problem) {
+  CostlyStructure out;
   if (problem.has_measured()) {
     // Only the frequency domain takes FRFs: what counts is where they are large.
     for (const modal::FrfSet* const set : {&problem.measured, &problem.workpiece_measured}) {
@@ -67,14 +67,14 @@ Structure structure_of(const LobesProblem& problem) {
 }
 
 /// The cut: the rotation of a period, and of it what is divided into pieces.
-struct Turn {
+struct CostlyTurn {
   double period_rad = units::revolution, in_pieces_rad = units::revolution;
   double arc_rad = units::revolution;  ///< of one tooth
   double base = 1.0;                   ///< factor of what a period without pieces takes
 };
 
-Turn turn_of(const LobesProblem& problem, double depth_m) {
-  Turn turn;
+CostlyTurn costly_turn(const LobesProblem& problem, double depth_m) {
+  CostlyTurn turn;
   if (problem.drilling) {
     turn.period_rad = turn.in_pieces_rad = units::revolution / problem.drilling->lips;
     turn.base = 30.0;
@@ -99,41 +99,46 @@ Turn turn_of(const LobesProblem& problem, double depth_m) {
   return turn;
 }
 
-double of_modes(double modes) {
+double factor_of_modes(double modes) {
   return 1.0 + 0.25 * modes + 0.01 * modes * modes;
 }
 
 /// Of one radius by collocation. Where every mode dies out between two teeth the multipliers are those of the delay,
 /// which fade alike: the matrix is formed, up to its largest size, and beyond it the search ends unsettled.
-double collocation(const Structure& structure, const Turn& turn, double speed) {
+double operations_of_collocation(const CostlyStructure& structure, const CostlyTurn& turn, double speed) {
   const double pieces = turn.in_pieces_rad * structure.fastest_rad_per_s / speed / longest_piece_rad;
   const double faded = structure.least_decay_per_s * turn.period_rad / speed;
-  double time = turn.base * 3.0 * us * of_modes(structure.modes) + 8.0 * us * pieces;
-  if (faded < 3.0) return time + 0.2 * us * pieces * pieces;
-  const double size = std::min(nodes * pieces, 1200.0);
-  time += 8e-5 * us * size * size * size;
-  return time + 600.0 * us * std::max(0.0, pieces - 150.0);
+  double time = turn.base * 3.0 * of_us * factor_of_modes(structure.modes) + 8.0 * of_us * pieces;
+  if (faded < 3.0) return time + 0.2 * of_us * pieces * pieces;
+  const double size = std::min(nodes_of_piece * pieces, 1200.0);
+  time += 8e-5 * of_us * size * size * size;
+  return time + 600.0 * of_us * std::max(0.0, pieces - 150.0);
 }
 
-double discretization(const Structure& structure, const Turn& turn, const LobesOptions& options, double teeth) {
+double operations_of_steps(const CostlyStructure& structure, const CostlyTurn& turn, const LobesOptions& options,
+                           double teeth) {
   const bool first = options.method == Method::semi_discretization_first_order;
   const double steps = options.intervals * std::max(1.0, teeth * turn.period_rad / units::revolution);
-  return 3.0 * us * of_modes(structure.modes) + (first ? 0.4 : 0.15) * us * steps * of_modes(structure.modes);
+  return 3.0 * of_us * factor_of_modes(structure.modes) +
+         (first ? 0.4 : 0.15) * of_us * steps * factor_of_modes(structure.modes);
 }
 
-double frequency_domain(const Structure& structure, const Turn& turn, const LobesOptions& options, double speed) {
+double operations_of_limit(const CostlyStructure& structure, const CostlyTurn& turn, const LobesOptions& options,
+                           double speed) {
   const double pieces =
       std::min(turn.period_rad, turn.arc_rad) * structure.counting_rad_per_s / speed / longest_piece_rad;
-  if (options.method == Method::zeroth_order) return 100.0 * us + 30.0 * us * pieces;
-  return 4e3 * us * of_modes(structure.modes) + 530.0 * us * pieces * pieces * pieces;
+  if (options.method == Method::zeroth_order) return 100.0 * of_us + 30.0 * of_us * pieces;
+  return 4e3 * of_us * factor_of_modes(structure.modes) + 530.0 * of_us * pieces * pieces * pieces;
 }
 
-double bytes_of(const Structure& structure, const Turn& turn, const LobesOptions& options, double slowest) {
+double bytes_of_lanes(const CostlyStructure& structure, const CostlyTurn& turn, const LobesOptions& options,
+                      double slowest) {
   if (in_frequency_domain(options.method)) return 1e8;
   const double lanes = static_cast<double>(lane_count) * thread_count();
-  if (options.method != Method::collocation) return lanes * options.intervals * 200.0 * of_modes(structure.modes);
+  if (options.method != Method::collocation)
+    return lanes * options.intervals * 200.0 * factor_of_modes(structure.modes);
   const double pieces = 1.0 + turn.in_pieces_rad * structure.fastest_rad_per_s / slowest / longest_piece_rad;
-  const double matrix = std::min(nodes * pieces, 1200.0);
+  const double matrix = std::min(nodes_of_piece * pieces, 1200.0);
   return lanes * (2.0 * pieces * 1e4 * (1.0 + 0.1 * structure.modes) + 20.0 * matrix * matrix);
 }
 
@@ -143,18 +148,18 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
                    std::span<const double> spindle_speeds_rad_per_s, const Looks& looks) {
   Cost cost = {.bytes = looks.bytes};
   if (spindle_speeds_rad_per_s.empty()) return cost;
-  const Structure structure = structure_of(problem);
-  const Turn turn = turn_of(problem, options.axial_depth_m[1]);
+  const CostlyStructure structure = costly_structure(problem);
+  const CostlyTurn turn = costly_turn(problem, options.axial_depth_m[1]);
   const bool at_once = in_frequency_domain(options.method);
   for (const double speed : spindle_speeds_rad_per_s) {
-    const double look = at_once ? frequency_domain(structure, turn, options, speed)
+    const double look = at_once ? operations_of_limit(structure, turn, options, speed)
                         : options.method == Method::collocation
-                            ? collocation(structure, turn, speed)
-                            : discretization(structure, turn, options, problem.milling.tool.teeth);
+                            ? operations_of_collocation(structure, turn, speed)
+                            : operations_of_steps(structure, turn, options, problem.milling.tool.teeth);
     cost.operations += (at_once ? 1.0 : looks.a_speed) * look * looks.times;
   }
   const double slowest = std::ranges::min(spindle_speeds_rad_per_s);
-  cost.bytes += bytes_of(structure, turn, options, slowest);
+  cost.bytes += bytes_of_lanes(structure, turn, options, slowest);
   constexpr double usual_hz = 1000.0, usual_rad_per_s = 4000.0 * units::rpm, usual_intervals = 40.0;
   cost.dominant = dominant_of({looks.counted,
                                {.field = structure.field,
@@ -171,7 +176,7 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
   return cost;
 }
 
-void add_points(const LobesProblem& problem, const LobesOptions& options, Cost& cost) {
+void add_cost_of_points(const LobesProblem& problem, const LobesOptions& options, Cost& cost) {
   double most = cost.operations;
   for (const OperatingPoint& point : options.points) {
     const Cost one =

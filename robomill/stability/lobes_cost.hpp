@@ -19,7 +19,7 @@ struct Looks {
                                  std::span<const double> spindle_speeds_rad_per_s, const Looks& looks);
 
 /// Adds points beside a chart, each with its limit or gain margin.
-void add_points(const LobesProblem& problem, const LobesOptions& options, Cost& cost);
+void add_cost_of_points(const LobesProblem& problem, const LobesOptions& options, Cost& cost);
 
 /// Evaluations that a limit between the depths of a column takes.
 inline constexpr double looks_a_limit = 40.0;

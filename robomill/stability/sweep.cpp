@@ -48,7 +48,7 @@ void require_affordable_sweep(const LobesProblem& problem, const SweepOptions& o
                             {.a_speed = looks_a_node * depths,
                              .bytes = 60.0 * nodes,
                              .counted = {.field = "grid", .value = larger, .times_usual = nodes / usual_nodes}});
-  add_points(problem, as_chart, cost);
+  add_cost_of_points(problem, as_chart, cost);
   require_affordable(cost);
 }
 
