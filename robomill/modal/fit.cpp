@@ -284,25 +284,27 @@ void FitOptions::validate() const {
 
 namespace {
 
-/// The swarm looks at every line for each particle in each round; the poles at every line for each two orders.
+/// The swarm sees some hundred lines, for each particle in each round; the poles every line, for each order and in each
+/// step of their refinement.
 void require_affordable_fit(const FrfSet& used, const FitOptions& options) {
-  constexpr double operations_of_value = 0.5, usual_particles = 400.0, usual_iterations = 1000.0;
-  const double values = static_cast<double>(used.frequency_hz.size()) * static_cast<double>(used.frfs.size());
+  const auto lines = static_cast<double>(used.frequency_hz.size());
+  const auto frfs = static_cast<double>(used.frfs.size());
   const double modes = options.modes > 0 ? options.modes : 8.0;
-  const double particles = options.pso_particles, iterations = options.pso_max_iterations;
-  const bool swarm = options.method == FitMethod::pso;
-  const double orders = options.lscf_max_order;
-  require_affordable(
-      {.operations = swarm ? operations_of_value * modes * values * particles * iterations
-                           : values * (orders * orders + 2e3 * modes),
-       .bytes = swarm ? 100.0 * modes * particles + 8.0 * iterations : 16.0 * 10.0 * values,
-       .dominant =
-           swarm ? dominant_of(
-                       {{.field = "pso_particles", .value = particles, .times_usual = particles / usual_particles},
-                        {.field = "pso_max_iterations",
-                         .value = iterations,
-                         .times_usual = iterations / usual_iterations}})
-                 : CostDriver{.field = "lines", .value = static_cast<double>(used.frequency_hz.size())}});
+  if (options.method == FitMethod::pso) {
+    constexpr double operations_of_value = 0.5, most_lines = 640.0, usual_particles = 400.0, usual_iterations = 8000.0;
+    const double particles = options.pso_particles, iterations = options.pso_max_iterations;
+    return require_affordable(
+        {.operations = operations_of_value * modes * std::min(lines, most_lines) * frfs * particles * iterations,
+         .bytes = 100.0 * modes * particles + 8.0 * iterations,
+         .dominant = dominant_of(
+             {{.field = "pso_particles", .value = particles, .times_usual = particles / usual_particles},
+              {.field = "pso_max_iterations", .value = iterations, .times_usual = iterations / usual_iterations}})});
+  }
+  constexpr double operations_of_order = 5.0, operations_of_mode = 5e3, bytes_of_order = 16.0;
+  const double orders = options.lscf_max_order, values = lines * frfs;
+  require_affordable({.operations = values * (operations_of_order * orders * orders + operations_of_mode * modes),
+                      .bytes = values * bytes_of_order * orders,
+                      .dominant = {.field = "frequency_hz", .value = lines, .unit = "lines"}});
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ void read_range(io::TomlFile& file, AssemblyFile& out) {
 
 /// Of the receptances of tool, holder and assembly, and of the FRFs as numbers of a document.
 void require_affordable_lines(double lines, double step_hz, double high_hz) {
-  constexpr double operations_of_line = 6e3, bytes_of_line = 1200.0, usual_step_hz = 1.0, usual_high_hz = 8000.0;
+  constexpr double operations_of_line = 3e3, bytes_of_line = 600.0, usual_step_hz = 1.0, usual_high_hz = 8000.0;
   require_affordable(
       {.operations = operations_of_line * lines,
        .bytes = bytes_of_line * lines,

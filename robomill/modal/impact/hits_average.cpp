@@ -96,7 +96,7 @@ Eigen::VectorXd tail_power(const std::vector<Tail>& tails, const Layout& layout)
 /// Of records that are padded to a length: a transform of each channel, and of each line what the window's decay takes
 /// to be removed.
 void require_affordable_transforms(double samples, const std::vector<Struck>& hits, const HitOptions& options) {
-  constexpr double operations_of_sample = 300.0, operations_of_line = 2e4, bytes_of_sample = 100.0;
+  constexpr double operations_of_sample = 300.0, operations_of_line = 5e3, bytes_of_sample = 100.0;
   double channels = 0.0;
   for (const Struck& struck : hits) channels += 1.0 + static_cast<double>(struck.hit->responses.size());
   const double of_line = options.exponential_window == ExponentialWindow::off ? 0.0 : operations_of_line;
