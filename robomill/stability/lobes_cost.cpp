@@ -73,7 +73,7 @@ struct CostlyTurn {
   double base = 1.0;                   ///< factor of what a period without pieces takes
 };
 
-CostlyTurn costly_turn(const LobesProblem& problem, double depth_m) {
+CostlyTurn costly_turn(const LobesProblem& problem, const LobesOptions& options) {
   CostlyTurn turn;
   if (problem.drilling) {
     turn.period_rad = turn.in_pieces_rad = units::revolution / problem.drilling->lips;
@@ -89,8 +89,12 @@ CostlyTurn costly_turn(const LobesProblem& problem, double depth_m) {
     return turn;
   }
   const cutting::Milling& milling = problem.milling;
-  turn.period_rad *= common_repeats(milling.speed_variation, turn.period_rad);
-  turn.arc_rad = milling.immersion.exit_rad - milling.immersion.entry_rad + std::abs(tool.lag_rad_per_m(0)) * depth_m;
+  const double lag_rad = std::abs(tool.lag_rad_per_m(0)) * options.axial_depth_m[1];
+  turn.arc_rad = milling.immersion.exit_rad - milling.immersion.entry_rad + lag_rad;
+  // Other methods have their own say on a speed that swings.
+  if (options.method == Method::collocation) {
+    turn.period_rad *= common_repeats(milling.speed_variation, turn.period_rad);
+  }
   const bool straight =
       alike && tool.lag_rad_per_m(0) == 0.0 && !milling.speed_variation.active() && !milling.process_damping.active();
   turn.in_pieces_rad = straight ? std::min(turn.period_rad, turn.arc_rad) : turn.period_rad;
@@ -149,7 +153,7 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
   Cost cost = {.bytes = looks.bytes};
   if (spindle_speeds_rad_per_s.empty()) return cost;
   const CostlyStructure structure = costly_structure(problem);
-  const CostlyTurn turn = costly_turn(problem, options.axial_depth_m[1]);
+  const CostlyTurn turn = costly_turn(problem, options);
   const bool at_once = in_frequency_domain(options.method);
   for (const double speed : spindle_speeds_rad_per_s) {
     const double look = at_once ? operations_of_limit(structure, turn, options, speed)
