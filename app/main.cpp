@@ -12,6 +12,7 @@
 
 #include "help.hpp"
 #include "options.hpp"
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
@@ -40,6 +41,7 @@ CLI::IsMember one_of_words(const Name<Value> (&names)[n]) {
 struct CommandLine {
   CLI::App parser{"robomill keeps a milling robot out of chatter: hammer hits to safe cutting conditions.", "robomill"};
   Common common;
+  bool allow_large = false;  ///< work that takes long or much memory is not rejected before it begins
   InitCommand init;
   FrfCommand frf;
   ModesCommand modes;
@@ -83,6 +85,8 @@ CLI::App* CommandLine::verb(const char* name, const char* description, std::func
   sub->add_flag("--quiet", common.quiet, "no summary and no progress");
   sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(whole_number(1));
   sub->add_option("--seed", common.seed, "seed of every random number (default: 1)")->check(unsigned_number());
+  sub->add_flag("--allow-large", allow_large,
+                "do what takes more than 10 minutes of one core or 2 GB, instead of rejecting it before it begins");
   sub->callback([this, run = std::move(run)] { chosen = run; });
   return sub;
 }
@@ -310,7 +314,7 @@ void CommandLine::add_machine_verbs() {
   add_posture(sub, plan.posture_deg);
 
   sub = verb("serve", "the page of a folder, over HTTP", [this](Progress& p) { return run(serve, common, p); });
-  sub->remove_option(sub->get_option("--report"));
+  for (const char* const option : {"--report", "--allow-large"}) sub->remove_option(sub->get_option(option));
   serve::ServeOptions& options = serve.options;
   sub->add_option("folder", options.folder, "what is served, and nothing outside it (default: the current folder)");
   sub->add_option("--port", options.port, "to listen at; 0: any that is free (default: 8437)")
@@ -354,6 +358,7 @@ int run_chosen(int argc, char** argv) {
     require_report_place(line.common.report);
     const io::OutputPlaces outputs(line.outputs());
     set_thread_count(line.common.threads);
+    if (line.allow_large) set_cost_limit(no_cost_limit);
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
   } catch (const InvalidInput& error) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Every public header.
 #include "robomill/base/assumption.hpp"
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"

@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cutting/chip.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/degrees.hpp"
 #include "robomill/cutting/polynomial.hpp"
 
@@ -213,12 +214,8 @@ void MillingCoefficients::validate(double from_position_rad, double to_position_
 }
 
 void CutMotion::validate() const {
-  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
-  if (feed_per_tooth_m > 0.01) {
-    throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m", "is too large for any cutter",
-                       "0.1 mm = 1e-4 m is usual; are the units mixed up?");
-  }
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  require_feed_per_tooth("feed_per_tooth_m", feed_per_tooth_m);
+  if (spindle_speed_rad_per_s != 0.0) require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
 }
 
 void ForceOptions::validate() const {

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
@@ -80,7 +81,7 @@ void MonitorPlan::validate() const {
   if (speeds.empty()) throw InvalidInput("speeds", "must hold at least one");
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     const std::string path = fmt::format("speeds[{}].", i + 1);
-    require_positive((path + "spindle_speed_rad_per_s").c_str(), speeds[i].spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", speeds[i].spindle_speed_rad_per_s);
     if (speeds[i].line < 0) throw InvalidInput(path + "line", speeds[i].line, "", "must be >= 0");
   }
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");

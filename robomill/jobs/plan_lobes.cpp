@@ -12,6 +12,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/jobs/vibration_text.hpp"
 
@@ -225,9 +226,11 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   cover_spindle(result);
-  find_limits(result, progress);
-  cover_cutter(result, progress);
-  spread(result, seed, progress);
+  with_words_of(result.cut, [&] {
+    find_limits(result, progress);
+    cover_cutter(result, progress);
+    spread(result, seed, progress);
+  });
   report_vibration(result);
   pairs(result, progress);
   turn_feed(result, progress);

@@ -49,7 +49,6 @@ std::optional<HttpResponse> page_file(const std::string& path) {
   return std::nullopt;
 }
 
-/// The one name that is no address.
 WorkerOptions worker_of(const ServeOptions& options, const Folder& folder) {
   return {.command = options.worker,
           .root = folder.root(),

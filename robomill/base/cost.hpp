@@ -1,0 +1,49 @@
+#pragma once
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+#include "robomill/base/export.hpp"
+
+// Method: robomill/base/README.md, "Method"
+
+namespace robomill {
+
+/// A number of the input that a cost grows with.
+struct CostDriver {
+  std::string field = {};  ///< as InvalidInput names it, "grid"
+  double value = 0.0;
+  std::string unit = {};
+  double times_usual = 1.0;  ///< what it multiplies the cost by, over a usual value of it
+};
+
+/// The one that makes the cost what it is; the first of equal ones. One without a field is nobody's to change.
+[[nodiscard]] ROBOMILL_API CostDriver dominant_of(std::initializer_list<CostDriver> drivers);
+
+/// What a computation is about to take, known before it runs; within a factor of about three.
+struct Cost {
+  double operations = 0.0;  ///< in all, on whatever cores; one core does some 1e9 a second
+  double bytes = 0.0;       ///< held at a time
+  CostDriver dominant = {};
+};
+
+/// What may be taken.
+struct CostLimit {
+  double operations = 6e11;  ///< ten minutes of one core
+  double bytes = 2e9;
+};
+/// Of a server, which others use too: two minutes of one core, 1 GB.
+inline constexpr CostLimit served_cost_limit = {.operations = 1.2e11, .bytes = 1e9};
+/// Of those who know what they ask for.
+inline constexpr CostLimit no_cost_limit = {.operations = std::numeric_limits<double>::infinity(),
+                                            .bytes = std::numeric_limits<double>::infinity()};
+
+/// What require_affordable compares with from now on, in the whole process.
+ROBOMILL_API void set_cost_limit(const CostLimit& limit);
+[[nodiscard]] ROBOMILL_API CostLimit cost_limit();
+
+/// Before the work.
+/// @throws InvalidInput naming the dominant field where the cost is above the limit, with estimate and limit
+ROBOMILL_API void require_affordable(const Cost& cost);
+
+}  // namespace robomill
