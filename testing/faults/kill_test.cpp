@@ -1,0 +1,139 @@
+// kill -9 at any time: files are whole or what they were, and lines of a stream are whole.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/monitor/test_processes.hpp"
+#include "robomill/base/random.hpp"
+#include "testing/faults/judge.hpp"
+#include "testing/serve/http_client.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::faults {
+namespace kill_test {
+
+namespace fs = std::filesystem;
+
+void sleep_s(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+std::vector<std::string> robomill_in(const fs::path& folder, std::initializer_list<const char*> arguments) {
+  std::vector<std::string> words = {"env", "-C", folder.string(), ROBOMILL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+
+/// Those that write much for the time that they take.
+TEST(Kill, LeavesOldOrNewFiles) {
+  Random random(5);
+  for (const Case& which : all_cases()) {
+    const std::string name = std::string(which.verb) + " " + which.ending;
+    if (name != "plan folder" && name != "smooth h5" && name != "monitor recordings wav") continue;
+    const test::Folder folder;
+    Place place({.robomill = ROBOMILL_PROGRAM, .shim = ROBOMILL_FAULT_SHIM}, folder.path());
+    Judge judge(place, which);
+    for (int turn = 0; turn < test::seeds(100); ++turn) {
+      const Judgement judgement = judge.run_killed(random.uniform());
+      EXPECT_TRUE(judgement.findings.empty()) << name << ": " << judgement.text;
+    }
+  }
+}
+
+// Events are written as they come where the samples come from a stream.
+TEST(Kill, LeavesWholeLinesOfAStream) {
+  const test::Folder folder;
+  const fs::path work = folder.at("work"), events = work / "events.jsonl";
+  fs::create_directory(work);
+  restore(work, inputs_of({.verb = "monitor"}));
+  const std::vector<std::string> words = {
+      "sh", "-c",
+      "cd '" + work.string() + "' && exec '" ROBOMILL_PROGRAM
+      "' monitor monitor.toml --input - --every-window -o events.jsonl <cut.csv"};
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(test::Process(words, folder.at("out.txt"), folder.at("err.txt")).wait(), 0)
+      << test::slurp(folder.at("err.txt"));
+  const double whole_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::string all = without_times(test::slurp(events));
+  ASSERT_GT(std::ranges::count(all, '\n'), 20);
+  Random random(7);
+  for (int turn = 0; turn < test::seeds(100); ++turn) {
+    fs::remove(events);
+    test::Process process(words, folder.at("out.txt"), folder.at("err.txt"));
+    sleep_s(whole_s * random.uniform());
+    process.signal(SIGKILL);
+    (void)process.wait();
+    const std::string lines = without_times(test::slurp(events));
+    EXPECT_TRUE(all.starts_with(lines)) << lines;
+    EXPECT_TRUE(lines.empty() || lines.ends_with('\n')) << lines.substr(lines.rfind('\n') + 1);
+  }
+}
+
+/// A server that is asked to replace a file again and again.
+class KillServe : public testing::Test {
+ protected:
+  void start() {
+    server_ = std::make_unique<test::Process>(robomill_in(folder_.path() / "work", {"serve", ".", "--port", "0"}),
+                                              folder_.at("out.txt"), folder_.at("err.txt"));
+    ASSERT_TRUE(test::wait_for([this] { return port() > 0; })) << test::slurp(folder_.at("err.txt"));
+    const std::string page = test::http_ask(port(), "GET", "/").body;
+    const std::size_t token = page.find("\"token\":\"") + 9;
+    token_ = page.substr(token, page.find('"', token) - token);
+  }
+  [[nodiscard]] int port() const {
+    const std::string said = test::slurp(folder_.at("out.txt"));
+    const std::size_t at = said.find("http://127.0.0.1:");
+    return at == std::string::npos || said.find("/\n", at) == std::string::npos ? 0 : std::stoi(said.substr(at + 17));
+  }
+  /// One of the contents that are written by turns: a megabyte of one letter.
+  static std::string content(char letter) { return "# " + std::string(900'000, letter) + "\n"; }
+
+  test::Folder folder_;
+  std::unique_ptr<test::Process> server_;
+  std::string token_;
+};
+
+TEST_F(KillServe, LeavesWholeFiles) {
+  const fs::path work = folder_.path() / "work", file = work / "notes.toml";
+  fs::create_directory(work);
+  Random random(9);
+  int replaced = 0;
+  for (int turn = 0; turn < test::seeds(100); ++turn) {
+    restore(work, {{"notes.toml", content('a')}});
+    start();
+    if (HasFatalFailure()) return;
+    const int port_now = port();
+    std::atomic<int> taken{0};
+    std::jthread client([&](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        const char letter = static_cast<char>('b' + taken % 25);
+        test::HttpAnswer answer = test::http_ask(port_now, "GET", "/api/file?path=notes.toml");
+        answer = test::http_ask(port_now, "PUT", "/api/file?path=notes.toml",
+                                {{"X-Robomill-Token", token_}, {"If-Match", answer.headers["etag"]}}, content(letter));
+        if (answer.status != 200) return;
+        ++taken;
+      }
+    });
+    sleep_s(0.02 + 0.1 * random.uniform());
+    server_->signal(SIGKILL);
+    (void)server_->wait();
+    client.request_stop();
+    client.join();
+    const std::string now = test::slurp(file);
+    ASSERT_EQ(now.size(), content('a').size()) << "after " << taken;
+    EXPECT_EQ(now, content(now[2]));
+    replaced += taken;
+  }
+  EXPECT_GT(replaced, 0);
+}
+
+}  // namespace kill_test
+}  // namespace robomill::faults
