@@ -92,6 +92,11 @@ max_angular_jerk_deg_per_s3 = 12000
 
 constexpr const char* part_ngc = "G21 G90 G94\nG64\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nM30\n";
 
+/// An arm of no maker: programs of every controller are written for it.
+std::string smoothing_cell() {
+  return test::slurp(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml");
+}
+
 /// A slot of two blocks in a box.
 constexpr const char* slot_ngc = "G21 G90 G94\nS9000 M3\nG0 X-8 Y0 Z5\nG1 Z-1 F600\nG1 X0\nG1 X8\nG0 Z5\nM30\n";
 constexpr const char* slot_toml = R"([tool]
@@ -127,6 +132,8 @@ std::string cut_csv() {
   return text;
 }
 
+constexpr const char* wav_monitor_toml = "[signal]\nchannels = [1]\n[process]\nspindle_speed_rpm = 7000\nteeth = 3\n";
+
 /// Noise that trebles where chatter begins.
 Files labelled_recordings() {
   constexpr int frames = 12'000;
@@ -150,7 +157,7 @@ Files labelled_recordings() {
 
 Files inputs_of_verb(std::string_view verb) {
   if (verb == "init" || verb == "frf") return {};
-  if (verb == "modes") return {{"tip.csv", one_mode()}};
+  if (verb == "modes") return {{"tip.csv", one_mode()}, {"assembly.toml", assembly_toml()}};
   if (verb == "couple") return {{"assembly.toml", assembly_toml()}};
   if (verb == "couple --tools") {
     return {{"assembly.toml", assembly_toml()}, {"tools.csv", "tool,length_mm,diameter_mm\nbar,118,12\nshort,80,12\n"}};
@@ -173,17 +180,25 @@ Files inputs_of_verb(std::string_view verb) {
              "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,0,0,0.044,-0.016,0\n0,0,0,100,0,0,0.14,0\n"
              "0,90,0,100,0,-0.016,0.064,0\n"}};
   }
-  if (verb == "cell check") return {{"cell.toml", cell_toml}};
-  if (verb == "smooth") {
-    // An arm of no maker: programs of every controller are written for it.
-    return {{"cell.toml", test::slurp(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml")},
-            {"part.ngc", part_ngc}};
-  }
+  if (verb == "cell check") return {{"cell.toml", cell_toml}, {"slot.ngc", slot_ngc}};
+  if (verb == "monitor a wav") return {{"lobes.toml", lobes_toml}, {"monitor.toml", wav_monitor_toml}};
+  if (verb == "smooth") return {{"cell.toml", smoothing_cell()}, {"part.ngc", part_ngc}};
   if (verb == "monitor") {
-    return {{"monitor.toml", "[signal]\nchannels = [\"ax_m_per_s2\"]\nsample_rate_hz = 5120\n[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"},
+    return {{"monitor.toml",
+             "[signal]\nchannels = [\"ax_m_per_s2\"]\nsample_rate_hz = 5120\n[process]\nspindle_speed_rpm = "
+             "3000\nteeth = 2\n"},
             {"cut.csv", cut_csv()}};
   }
   if (verb == "calibrate") return labelled_recordings();
+  if (verb == "plan a program") {
+    return {{"slot.ngc", slot_ngc},
+            {"slot.toml", slot_toml},
+            {"modes.toml", modes_toml},
+            {"cell.toml", smoothing_cell()},
+            {"job.toml",
+             "[job]\nforces = \"slot.toml\"\ncell = \"cell.toml\"\nprogram = \"slot.ngc\"\nmodes = \"modes.toml\"\n"
+             "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 12000\n[decide]\nfree = [\"spindle_speed\"]\n"}};
+  }
   if (verb == "plan") {
     return {{"lobes.toml", lobes_toml},
             {"modes.toml", modes_toml},
@@ -214,6 +229,9 @@ std::vector<Case> all_cases() {
       {"modes", "json", "modes tip.csv -o modes.json"},
       {"modes", "csv", "modes tip.csv -o modes.csv"},
       {"modes", "report html", "modes tip.csv -o modes.json --report modes.html"},
+      {"modes", "json from mat", "modes tip.mat --modes 2 --band 100,1500 -o modes.json",
+       "couple assembly.toml -o tip.mat --quiet"},
+      {"modes", "json from uff", "modes tip.uff --modes 2 --band 100,1500 -o modes.json", tip},
       {"couple", "uff", "couple assembly.toml -o c.uff"},
       {"couple", "mat", "couple assembly.toml -o c.mat"},
       {"couple", "json", "couple assembly.toml -o c.json"},
@@ -243,6 +261,7 @@ std::vector<Case> all_cases() {
       {"stiffness", "json", "stiffness loads.csv --cell cell.toml -o s.json"},
       {"cell check", "json", "cell check cell.toml -o check.json"},
       {"cell check", "report html", "cell check cell.toml --report check.html"},
+      {"cell check", "json of a program", "cell check cell.toml --program slot.ngc -o check.json"},
       {"smooth", "csv", "smooth part.ngc --cell cell.toml -o t.csv"},
       {"smooth", "h5", "smooth part.ngc --cell cell.toml -o t.h5"},
       {"smooth", "src", "smooth part.ngc --cell cell.toml -o t.src"},
@@ -254,8 +273,12 @@ std::vector<Case> all_cases() {
       {"monitor", "recordings wav", "monitor monitor.toml --input cut.csv --record alarms", "", false, true},
       {"monitor", "report json", "monitor monitor.toml --input cut.csv --report report.json"},
       {"monitor", "standard output", "monitor monitor.toml --input cut.csv -o -", "", true},
+      {"monitor a wav", "jsonl", "monitor monitor.toml --input cut.wav --every-window -o events.jsonl",
+       "simulate lobes.toml --at 7000,0.5 --seconds 1 -o cut.wav --quiet"},
       {"calibrate", "toml and report json", "calibrate recordings.toml -o calibrated.toml --report report.json"},
       {"plan", "folder", "plan job.toml -o plan"},
+      {"plan a program", "folder", "plan job.toml -o plan"},
+      {"plan", "report html", "plan job.toml --report plan.html"},
       {"plan", "standard output", "plan job.toml -o -", "", true},
   };
 }

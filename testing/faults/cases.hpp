@@ -9,11 +9,11 @@ namespace robomill::faults {
 
 struct Case {
   const char* verb = "";
-  const char* ending = "";        ///< what is written
-  const char* arguments = "";     ///< of robomill
-  const char* make_inputs = "";   ///< arguments with which robomill makes an input; none where empty
-  bool to_stdout = false;         ///< standard output counts, and is compared
-  bool is_new = false;            ///< there is no older result: the verb rejects one, or takes another name
+  const char* ending = "";       ///< what is written
+  const char* arguments = "";    ///< of robomill
+  const char* make_inputs = "";  ///< arguments with which robomill makes an input; none where empty
+  bool to_stdout = false;        ///< standard output counts, and is compared
+  bool is_new = false;           ///< there is no older result: the verb rejects one, or takes another name
 };
 
 [[nodiscard]] std::vector<Case> all_cases();

@@ -20,8 +20,9 @@ enum class Kind : unsigned char {
 constexpr std::size_t kind_count = 7;
 constexpr std::array<const char*, kind_count> kind_names = {"ENOSPC",    "EIO",     "EINTR",    "short write",
                                                             "full disk", "kill -9", "no memory"};
-constexpr std::array<Kind, kind_count> all_kinds = {Kind::no_space,  Kind::io_error, Kind::interrupted, Kind::short_write,
-                                                    Kind::disk_full, Kind::killed,   Kind::no_memory};
+constexpr std::array<Kind, kind_count> all_kinds = {Kind::no_space,    Kind::io_error,  Kind::interrupted,
+                                                    Kind::short_write, Kind::disk_full, Kind::killed,
+                                                    Kind::no_memory};
 
 /// What was called. Opening to read and opening to write differ, since a full disk can still be read. Only what was
 /// opened to write is closed with consequences.
@@ -36,12 +37,17 @@ constexpr bool applies(Kind kind, Call call) {
   const bool allocates = call == Call::allocate;
   const bool only_reads = call == Call::open || call == Call::read;
   switch (kind) {
-    case Kind::no_memory: return allocates;
-    case Kind::io_error: return !allocates;
+    case Kind::no_memory:
+      return allocates;
+    case Kind::io_error:
+      return !allocates;
     case Kind::killed:
-    case Kind::no_space: return !allocates && !only_reads;
-    case Kind::disk_full: return !allocates && !only_reads && call != Call::close && call != Call::rename;
-    case Kind::short_write: return call == Call::write;
+    case Kind::no_space:
+      return !allocates && !only_reads;
+    case Kind::disk_full:
+      return !allocates && !only_reads && call != Call::close && call != Call::rename;
+    case Kind::short_write:
+      return call == Call::write;
     case Kind::interrupted:
       return !allocates && call != Call::open && call != Call::rename && call != Call::make_folder;
   }

@@ -19,9 +19,8 @@ namespace faults_test {
 
 std::string described(const Judgement& judgement) {
   return std::string(kind_names.at(static_cast<std::size_t>(judgement.fault.kind))) + " at call " +
-         std::to_string(judgement.fault.n) + ", to " +
-         call_names.at(static_cast<std::size_t>(judgement.outcome.call)) + " " + judgement.outcome.file + ": exit " +
-         std::to_string(judgement.outcome.exit) + "\n" + judgement.text;
+         std::to_string(judgement.fault.n) + ", to " + call_names.at(static_cast<std::size_t>(judgement.outcome.call)) +
+         " " + judgement.outcome.file + ": exit " + std::to_string(judgement.outcome.exit) + "\n" + judgement.text;
 }
 
 class Faults : public testing::TestWithParam<Case> {
@@ -48,7 +47,8 @@ TEST_P(Faults, LeaveTheOldFileOrTheNew) {
 
 std::string name_of(const testing::TestParamInfo<Case>& which) {
   std::string name = std::string(which.param.verb) + "_" + which.param.ending;
-  std::ranges::replace_if(name, [](unsigned char letter) { return std::isalnum(letter) == 0; }, '_');
+  std::ranges::replace_if(
+      name, [](unsigned char letter) { return std::isalnum(letter) == 0; }, '_');
   return name;
 }
 
@@ -71,7 +71,8 @@ TEST(Shim, CountsCallsInTheirOrder) {
   EXPECT_GT(count(Kind::no_memory), 100U);
   for (const Kind kind : all_kinds) {
     restore(place.folder(), {});
-    EXPECT_TRUE(place.run(arguments, {kind, count(kind)}, false).reached) << kind_names.at(static_cast<std::size_t>(kind));
+    EXPECT_TRUE(place.run(arguments, {kind, count(kind)}, false).reached)
+        << kind_names.at(static_cast<std::size_t>(kind));
     restore(place.folder(), {});
     const Outcome beyond = place.run(arguments, {kind, count(kind) + 1}, false);
     EXPECT_FALSE(beyond.reached) << kind_names.at(static_cast<std::size_t>(kind));
@@ -90,7 +91,8 @@ TEST(Shim, KillsBeforeACallAndInTheMiddleOfAWrite) {
     const Outcome outcome = place.run("init cell --example --quiet", {Kind::killed, n}, false);
     if (!outcome.reached) break;
     EXPECT_EQ(outcome.exit, 137);
-    for (const auto& [name, content] : files_of(place.folder())) half = half || (name != "cell.toml" && !content.empty());
+    for (const auto& [name, content] : files_of(place.folder()))
+      half = half || (name != "cell.toml" && !content.empty());
   }
   EXPECT_TRUE(half);
 }

@@ -1,4 +1,5 @@
-// An output that is an input of its own run, by its name, a symbolic link or a hard link: rejected, and nothing changes.
+// An output that is an input of its own run, by its name, a symbolic link or a hard link: rejected, and nothing
+// changes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -58,8 +59,7 @@ Files inputs() {
     }
     for (auto& [name, content] : of_verb) files[name] = content;
   }
-  files["path.csv"] =
-      "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n-8,0,5,0,0,1,0\n-8,0,-1,0,0,1,600\n8,0,-1,0,0,1,600\n";
+  files["path.csv"] = "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n-8,0,5,0,0,1,0\n-8,0,-1,0,0,1,600\n8,0,-1,0,0,1,600\n";
   files["slot.toml"] += "[cut]\nspindle_speed_rpm = 9000\n";  // which path.csv has not
   std::string moded = files["lobes.toml"];
   const std::size_t begin = moded.find("x = ["), end = moded.find("[lobes]");
@@ -77,8 +77,9 @@ class Inputs : public testing::TestWithParam<OverInput> {
  protected:
   Inputs() : place_({.robomill = ROBOMILL_PROGRAM, .shim = ROBOMILL_FAULT_SHIM}, folder_.path()) {
     restore(place_.folder(), inputs());
-    for (const char* make : {"init hits --example --quiet", "frf hits.toml -o hit.json --quiet",
-                             "modes tip.csv -o modes.json --quiet", "couple bare.toml --rotations -o holder.uff --quiet"}) {
+    for (const char* make :
+         {"init hits --example --quiet", "frf hits.toml -o hit.json --quiet", "modes tip.csv -o modes.json --quiet",
+          "couple bare.toml --rotations -o holder.uff --quiet"}) {
       const Outcome made = place_.run(make, {}, false);
       EXPECT_EQ(made.exit, 0) << make << ": " << made.err;
     }

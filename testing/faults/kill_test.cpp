@@ -56,8 +56,8 @@ TEST(Kill, LeavesWholeLinesOfAStream) {
   restore(work, inputs_of({.verb = "monitor"}));
   const std::vector<std::string> words = {
       "sh", "-c",
-      "cd '" + work.string() + "' && exec '" ROBOMILL_PROGRAM
-      "' monitor monitor.toml --input - --every-window -o events.jsonl <cut.csv"};
+      "cd '" + work.string() +
+          "' && exec '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - --every-window -o events.jsonl <cut.csv"};
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(test::Process(words, folder.at("out.txt"), folder.at("err.txt")).wait(), 0)
       << test::slurp(folder.at("err.txt"));

@@ -33,8 +33,7 @@ std::vector<std::string> words_of(const std::string& text) {
 Report* map_report(const fs::path& path) {
   std::ofstream(path, std::ios::binary) << std::string(sizeof(Report), '\0');
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  void* mapped =
-      file < 0 ? MAP_FAILED : ::mmap(nullptr, sizeof(Report), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  void* mapped = file < 0 ? MAP_FAILED : ::mmap(nullptr, sizeof(Report), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (file >= 0) ::close(file);
   if (mapped == MAP_FAILED) throw std::runtime_error("no report: " + path.string());
   return static_cast<Report*>(mapped);
@@ -60,10 +59,12 @@ Files files_of(const fs::path& folder) {
 }
 
 std::string without_times(std::string text) {
-  for (const std::string marker : {"\"seconds\":", "\"compute_us\":", "\"compute_mean_us\":", "\"compute_max_us\":", "planned in "}) {
+  for (const std::string marker :
+       {"\"seconds\":", "\"plan_seconds\":", "\"microseconds_per_sample\":", "\"compute_us\":", "\"compute_mean_us\":",
+        "\"compute_max_us\":", "planned in ", "\"created\":\""}) {
     for (std::size_t at = text.find(marker); at != std::string::npos; at = text.find(marker, at + 1)) {
       const std::size_t begin = at + marker.size();
-      text.erase(begin, text.find_first_not_of(" .0123456789e+-", begin) - begin);
+      text.erase(begin, text.find_first_not_of(" :.0123456789e+-", begin) - begin);
     }
   }
   return text;

@@ -126,15 +126,20 @@ Verdict next(Call call, const char* file) noexcept {
     std::strncpy(report->file.data(), file, report->file.size() - 1);
   }
   switch (kind) {
-    case Kind::io_error: return {.error = EIO};
-    case Kind::interrupted: return {.error = EINTR};
-    case Kind::short_write: return {.half = true};
-    case Kind::no_memory: return {.error = ENOMEM};
+    case Kind::io_error:
+      return {.error = EIO};
+    case Kind::interrupted:
+      return {.error = EINTR};
+    case Kind::short_write:
+      return {.half = true};
+    case Kind::no_memory:
+      return {.error = ENOMEM};
     case Kind::killed:
       if (call == Call::write) return {.half = true, .dies = true};
       die();
     case Kind::no_space:
-    case Kind::disk_full: break;
+    case Kind::disk_full:
+      break;
   }
   return {.error = ENOSPC};
 }
