@@ -276,8 +276,9 @@ std::vector<Case> all_cases() {
       {"monitor a wav", "jsonl", "monitor monitor.toml --input cut.wav --every-window -o events.jsonl",
        "simulate lobes.toml --at 7000,0.5 --seconds 1 -o cut.wav --quiet"},
       {"calibrate", "toml and report json", "calibrate recordings.toml -o calibrated.toml --report report.json"},
-      {"plan", "folder", "plan job.toml -o plan"},
-      {"plan a program", "folder", "plan job.toml -o plan"},
+      {"plan", "folder", "plan job.toml -o plan", "", false, false, true},
+      {"plan", "new folder", "plan job.toml -o plan", "", false, true, true},
+      {"plan a program", "folder", "plan job.toml -o plan", "", false, false, true},
       {"plan", "report html", "plan job.toml --report plan.html"},
       {"plan", "standard output", "plan job.toml -o -", "", true},
   };

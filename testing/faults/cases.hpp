@@ -14,6 +14,7 @@ struct Case {
   const char* make_inputs = "";  ///< arguments with which robomill makes an input; none where empty
   bool to_stdout = false;        ///< standard output counts, and is compared
   bool is_new = false;           ///< there is no older result: the verb rejects one, or takes another name
+  bool together = false;         ///< all outputs are those of one run
 };
 
 [[nodiscard]] std::vector<Case> all_cases();

@@ -116,7 +116,7 @@ Judgement Judge::run_killed(double share) {
   return judgement;
 }
 
-void Judge::look(Judgement& judgement, bool compares_stdout) const {
+void Judge::look(Judgement& judgement, bool compares_stdout) {
   const Outcome& outcome = judgement.outcome;
   const Kind kind = judgement.fault.kind;
   const bool killed = kind == Kind::killed && outcome.reached && outcome.exit == 128 + SIGKILL;
@@ -125,7 +125,7 @@ void Judge::look(Judgement& judgement, bool compares_stdout) const {
     judgement.complete = false;
     if (outcome.exit == 0) add(judgement, Finding::silent, "standard output has " + described(outcome.out));
   }
-  if (killed) return;
+  if (killed) return look_at_next_run(judgement);
   if (outcome.exit != 0 && outcome.exit != 1) {
     add(judgement, Finding::signal, "exit " + std::to_string(outcome.exit) + ", " + outcome.err);
   }
@@ -136,30 +136,49 @@ void Judge::look(Judgement& judgement, bool compares_stdout) const {
 
 void Judge::look_at_files(Judgement& judgement) const {
   const Files now = files_of(place_.folder());
-  judgement.complete = true;
-  const auto hold = [&](const Files& files, const std::string& name, const std::string& content) {
+  const bool killed = judgement.fault.kind == Kind::killed;
+  const auto holds = [](const Files& files, const std::string& name, const std::string& content) {
     const auto at = files.find(name);
     return at != files.end() && same_text(at->second, content);
   };
-  for (const auto& [name, content] : now) {
-    const bool is_output = after_.contains(name);
-    const bool is_left = judgement.fault.kind == Kind::killed && is_hidden(name);
-    if (!is_output && !before_.contains(name) && !is_left) add(judgement, Finding::leftover, name);
-  }
+  bool all_new = true, all_old = true;
   for (const auto& [name, content] : after_) {
+    const auto old = before_.find(name);
     const auto there = now.find(name);
     const std::string seen = name + (there == now.end() ? " is gone" : " has " + described(there->second));
-    const bool is_new = hold(now, name, content);
-    const auto old = before_.find(name);
-    const bool is_old = old == before_.end() ? there == now.end() : hold(now, name, old->second);
-    judgement.complete = judgement.complete && is_new;
+    const bool is_new = holds(now, name, content);
+    const bool is_old = old == before_.end() ? there == now.end() : holds(now, name, old->second);
     if (old != before_.end() && old->second == content) {
       if (!is_new) add(judgement, Finding::input_changed, seen);
-    } else if (!is_new && judgement.outcome.exit == 0) {
+      continue;
+    }
+    all_new = all_new && is_new;
+    all_old = all_old && is_old;
+    if (!is_new && judgement.outcome.exit == 0) {
       add(judgement, Finding::silent, seen);
     } else if (!is_new && !is_old) {
       add(judgement, Finding::lost, seen);
     }
+  }
+  judgement.complete = all_new;
+  const bool hidden = std::ranges::any_of(now, [&](const auto& file) { return is_hidden(file.first); });
+  if (case_.together && !all_new && !all_old && !(killed && hidden)) add(judgement, Finding::mixed, "");
+  for (const auto& [name, content] : now) {
+    if (after_.contains(name) || before_.contains(name) || (killed && is_hidden(name))) continue;
+    add(judgement, Finding::leftover, name);
+  }
+}
+
+/// What a killed run left does not stand in the way of the next one.
+void Judge::look_at_next_run(Judgement& judgement) {
+  const Outcome next = place_.run(case_.arguments, {}, case_.to_stdout);
+  const Files now = files_of(place_.folder());
+  for (const auto& [name, content] : after_) {
+    const auto there = now.find(name);
+    // A verb that makes new files rejects those that are there already.
+    const bool may = next.exit == 0 || case_.is_new;
+    if (may && there != now.end() && same_text(there->second, content)) continue;
+    return add(judgement, Finding::not_survived, "the next run: exit " + std::to_string(next.exit) + ", " + next.err);
   }
 }
 

@@ -14,14 +14,16 @@ enum class Finding : unsigned char {
   signal,         ///< a signal ended it, or it hung
   silent,         ///< exit 0, and an output is not the new one
   lost,           ///< an output is neither what it was nor the new one
+  mixed,          ///< of documents that belong together some are old and some new
   leftover,       ///< a file that is no output
   input_changed,  ///< an input is not what it was
   message,        ///< not one line on standard error that begins with robomill:
-  not_survived    ///< EINTR or a short write made it fail
+  not_survived    ///< EINTR or a short write made it fail; after kill -9 the next run did
 };
-constexpr std::size_t finding_count = 7;
-constexpr std::array<const char*, finding_count> finding_names = {
-    "signal", "exit 0, wrong output", "old file lost", "left beside", "input changed", "no message", "not survived"};
+constexpr std::size_t finding_count = 8;
+constexpr std::array<const char*, finding_count> finding_names = {"signal",     "exit 0, wrong output", "old file lost",
+                                                                  "mixed",      "left beside",          "input changed",
+                                                                  "no message", "not survived"};
 
 struct Judgement {
   Fault fault;
@@ -48,8 +50,9 @@ class Judge {
   [[nodiscard]] std::vector<Fault> faults() const;
 
  private:
-  void look(Judgement& judgement, bool compares_stdout) const;
+  void look(Judgement& judgement, bool compares_stdout);
   void look_at_files(Judgement& judgement) const;
+  void look_at_next_run(Judgement& judgement);
 
   Place& place_;
   Case case_;
