@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sndfile.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <bit>
@@ -212,6 +213,24 @@ TEST(SampleSource, TakesBytesAsTheyCome) {
   const Pipe text("ax,ay\n1,2\n3,4\n", 1);
   EXPECT_EQ(all(*open_sample_stream(text.end(), "standard input", named({"ay"}), RawFormat::automatic)),
             (std::vector<float>{2, 4}));
+}
+
+// A peer that closes with bytes unread resets the connection: what came is no whole recording.
+TEST(SampleSource, AReadThatFailsIsNoEnd) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  ASSERT_EQ(::write(ends[1], "ax,ay\n1,2\n3,4\n", 14), 14);
+  ASSERT_EQ(::write(ends[0], "unread", 6), 6);
+  ::close(ends[1]);
+  std::vector<float> samples;
+  const std::string text = test::rejection([&] {
+    const auto source = open_sample_stream(ends[0], "standard input", named({"ax", "ay"}), RawFormat::csv);
+    SampleBlock block;
+    while (source->next(1, block)) samples.insert(samples.end(), block.samples.begin(), block.samples.end());
+  });
+  ::close(ends[0]);
+  EXPECT_EQ(text, "standard input: cannot be read to its end. Connection reset by peer");
+  EXPECT_EQ(samples, (std::vector<float>{1, 2, 3, 4}));
 }
 
 TEST(SampleSource, NumbersPickAmongRawColumns) {
