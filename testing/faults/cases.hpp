@@ -7,14 +7,20 @@
 
 namespace robomill::faults {
 
+enum Trait : unsigned {
+  to_stdout = 1,  ///< standard output counts, and is compared
+  is_new = 2,     ///< there is no older result: the verb rejects one, or takes another name
+  together = 4,   ///< all outputs are those of one run
+  goes_on = 8     ///< after an input or an output that fails it says so and exits with 0
+};
+
 struct Case {
   const char* verb = "";
   const char* ending = "";       ///< what is written
   const char* arguments = "";    ///< of robomill
   const char* make_inputs = "";  ///< arguments with which robomill makes an input; none where empty
-  bool to_stdout = false;        ///< standard output counts, and is compared
-  bool is_new = false;           ///< there is no older result: the verb rejects one, or takes another name
-  bool together = false;         ///< all outputs are those of one run
+  unsigned traits = 0;           ///< of Trait
+  [[nodiscard]] bool is(Trait trait) const { return (traits & trait) != 0; }
 };
 
 [[nodiscard]] std::vector<Case> all_cases();

@@ -83,7 +83,7 @@ void run_case(Place& place, const Case& which, int tenths, Failures& failures) {
     if (rows.at(i).runs > 0) print(rows.at(i), which.verb, which.ending, kind_names.at(i));
   }
   Row full;
-  if (which.to_stdout) {
+  if (which.is(to_stdout)) {
     const Judgement judgement = judge.run_onto_full_device();
     count(full, judgement);
     if (!judgement.findings.empty()) failures.add(which, judgement);

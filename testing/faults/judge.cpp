@@ -36,6 +36,18 @@ bool same_text(const std::string& one, const std::string& other) {
   return one == other || without_times(one) == without_times(other);
 }
 
+/// What the monitor says before it goes on without an input or a recording.
+bool says_failed(const std::string& text) {
+  return text.find("input-failed") != std::string::npos || text.find("recording-failed") != std::string::npos;
+}
+
+/// Nothing could be said: kill -9, or a library that ends the program where it has no memory.
+bool has_died(const Judgement& judgement) {
+  const Outcome& outcome = judgement.outcome;
+  if (!outcome.reached || outcome.exit < 128) return false;
+  return judgement.fault.kind == Kind::killed ? outcome.exit == 128 + SIGKILL : judgement.fault.kind == Kind::no_memory;
+}
+
 /// A temporary file that a killed process could not remove.
 bool is_hidden(const std::string& path) {
   return path.substr(path.rfind('/') + 1).starts_with(".");
@@ -51,21 +63,21 @@ Judge::Judge(Place& place, const Case& which) : place_(place), case_(which) {
   }
   before_ = files_of(place_.folder());
   const Files inputs = before_;
-  undisturbed_ = place_.run(which.arguments, {}, which.to_stdout);
+  undisturbed_ = place_.run(which.arguments, {}, which.is(to_stdout));
   if (undisturbed_.exit != 0) throw std::runtime_error(std::string(which.arguments) + ": " + undisturbed_.err);
   after_ = files_of(place_.folder());
-  if (!which.is_new) {
+  if (!which.is(is_new)) {
     for (const auto& [name, content] : after_) {
       if (!inputs.contains(name)) before_[name] = "an older result\n";
     }
   }
   restore(place_.folder(), before_);
   const auto begin = std::chrono::steady_clock::now();
-  const Outcome again = place_.run(which.arguments, {}, which.to_stdout);
+  const Outcome again = place_.run(which.arguments, {}, which.is(to_stdout));
   undisturbed_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const Files files = files_of(place_.folder());
   bool same = again.exit == 0 && files.size() == after_.size();
-  if (which.to_stdout) same = same && same_text(again.out, undisturbed_.out);
+  if (which.is(to_stdout)) same = same && same_text(again.out, undisturbed_.out);
   for (const auto& [name, content] : after_) same = same && files.contains(name) && same_text(files.at(name), content);
   if (!same) throw std::runtime_error(std::string(which.arguments) + ": two undisturbed runs differ");
   undisturbed_ = again;
@@ -87,8 +99,8 @@ Judgement Judge::run(const Fault& fault) {
   restore(place_.folder(), before_);
   Judgement judgement;
   judgement.fault = fault;
-  judgement.outcome = place_.run(case_.arguments, fault, case_.to_stdout);
-  look(judgement, case_.to_stdout);
+  judgement.outcome = place_.run(case_.arguments, fault, case_.is(to_stdout));
+  look(judgement, case_.is(to_stdout));
   return judgement;
 }
 
@@ -119,24 +131,26 @@ Judgement Judge::run_killed(double share) {
 void Judge::look(Judgement& judgement, bool compares_stdout) {
   const Outcome& outcome = judgement.outcome;
   const Kind kind = judgement.fault.kind;
-  const bool killed = kind == Kind::killed && outcome.reached && outcome.exit == 128 + SIGKILL;
   look_at_files(judgement);
+  const bool went_on = case_.is(goes_on) && says_failed(outcome.out + outcome.err);
   if (compares_stdout && !same_text(outcome.out, undisturbed_.out)) {
     judgement.complete = false;
-    if (outcome.exit == 0) add(judgement, Finding::silent, "standard output has " + described(outcome.out));
+    if (outcome.exit == 0 && !went_on) add(judgement, Finding::silent, "standard output has " + described(outcome.out));
   }
-  if (killed) return look_at_next_run(judgement);
+  if (has_died(judgement)) return look_at_next_run(judgement);
   if (outcome.exit != 0 && outcome.exit != 1) {
-    add(judgement, Finding::signal, "exit " + std::to_string(outcome.exit) + ", " + outcome.err);
+    add(judgement, Finding::exit, "exit " + std::to_string(outcome.exit) + ", " + outcome.err);
   }
   const bool says = outcome.exit == 0 ? outcome.err == undisturbed_.err : is_one_message(outcome.err);
-  if (!says && outcome.exit <= 1) add(judgement, Finding::message, "\"" + outcome.err + "\"");
+  if (!says && !went_on && outcome.exit <= 1) add(judgement, Finding::message, "\"" + outcome.err + "\"");
   if (is_harmless(kind) && outcome.exit != 0) add(judgement, Finding::not_survived, outcome.err);
 }
 
 void Judge::look_at_files(Judgement& judgement) const {
   const Files now = files_of(place_.folder());
-  const bool killed = judgement.fault.kind == Kind::killed;
+  const bool died = has_died(judgement);
+  bool went_on = case_.is(goes_on) && says_failed(judgement.outcome.out + judgement.outcome.err);
+  for (const auto& [name, content] : now) went_on = went_on || (case_.is(goes_on) && says_failed(content));
   const auto holds = [](const Files& files, const std::string& name, const std::string& content) {
     const auto at = files.find(name);
     return at != files.end() && same_text(at->second, content);
@@ -154,29 +168,31 @@ void Judge::look_at_files(Judgement& judgement) const {
     }
     all_new = all_new && is_new;
     all_old = all_old && is_old;
-    if (!is_new && judgement.outcome.exit == 0) {
+    // Events and reports of less than there was; no file of samples that is cut off.
+    const bool may_differ = went_on && (is_old || !name.ends_with(".wav"));
+    if (!is_new && judgement.outcome.exit == 0 && !may_differ) {
       add(judgement, Finding::silent, seen);
-    } else if (!is_new && !is_old) {
+    } else if (!is_new && !is_old && !may_differ) {
       add(judgement, Finding::lost, seen);
     }
   }
   judgement.complete = all_new;
   const bool hidden = std::ranges::any_of(now, [&](const auto& file) { return is_hidden(file.first); });
-  if (case_.together && !all_new && !all_old && !(killed && hidden)) add(judgement, Finding::mixed, "");
+  if (case_.is(together) && !all_new && !all_old && !(died && hidden)) add(judgement, Finding::mixed, "");
   for (const auto& [name, content] : now) {
-    if (after_.contains(name) || before_.contains(name) || (killed && is_hidden(name))) continue;
+    if (after_.contains(name) || before_.contains(name) || (died && is_hidden(name))) continue;
     add(judgement, Finding::leftover, name);
   }
 }
 
 /// What a killed run left does not stand in the way of the next one.
 void Judge::look_at_next_run(Judgement& judgement) {
-  const Outcome next = place_.run(case_.arguments, {}, case_.to_stdout);
+  const Outcome next = place_.run(case_.arguments, {}, case_.is(to_stdout));
   const Files now = files_of(place_.folder());
   for (const auto& [name, content] : after_) {
     const auto there = now.find(name);
     // A verb that makes new files rejects those that are there already.
-    const bool may = next.exit == 0 || case_.is_new;
+    const bool may = next.exit == 0 || case_.is(is_new);
     if (may && there != now.end() && same_text(there->second, content)) continue;
     return add(judgement, Finding::not_survived, "the next run: exit " + std::to_string(next.exit) + ", " + next.err);
   }

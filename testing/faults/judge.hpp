@@ -11,7 +11,7 @@ namespace robomill::faults {
 
 /// What is wrong with how a run ended.
 enum class Finding : unsigned char {
-  signal,         ///< a signal ended it, or it hung
+  exit,           ///< neither 0 nor 1: a signal ended it, it hung, or it took the fault for a result
   silent,         ///< exit 0, and an output is not the new one
   lost,           ///< an output is neither what it was nor the new one
   mixed,          ///< of documents that belong together some are old and some new
@@ -21,7 +21,7 @@ enum class Finding : unsigned char {
   not_survived    ///< EINTR or a short write made it fail; after kill -9 the next run did
 };
 constexpr std::size_t finding_count = 8;
-constexpr std::array<const char*, finding_count> finding_names = {"signal",     "exit 0, wrong output", "old file lost",
+constexpr std::array<const char*, finding_count> finding_names = {"other exit", "exit 0, wrong output", "old file lost",
                                                                   "mixed",      "left beside",          "input changed",
                                                                   "no message", "not survived"};
 

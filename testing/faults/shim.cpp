@@ -26,7 +26,7 @@ Kind kind = Kind::no_space;
 std::uint64_t nth = 0;
 char root[PATH_MAX] = {};
 std::atomic<unsigned char> descriptors[most_descriptors];
-std::atomic<bool> in_main{false};
+std::atomic<bool> in_main{false}, has_opened{false};
 
 /// Files or folders, by their inodes, of which something is not on the disk.
 struct Unsynced {
@@ -226,8 +226,12 @@ void copy(int from, int to) noexcept {
   descriptors[to] = counts(from) ? descriptors[from].load() : static_cast<unsigned char>(0);
 }
 
-bool is_in_main() noexcept {
-  return in_main;
+void note_open() noexcept {
+  has_opened = true;
+}
+
+bool is_at_work() noexcept {
+  return in_main && has_opened;
 }
 
 }  // namespace robomill::faults

@@ -44,8 +44,10 @@ int close_counted(int descriptor) noexcept;
 
 /// Standard output becomes a stream whose writes count.
 void count_stdout() noexcept;
-/// Allocations count only while main runs.
-bool is_in_main() noexcept;
+/// Allocations count while main runs, from the first file on that is opened: the parser of the command line is a
+/// library's, and ends the program where it has no memory.
+void note_open() noexcept;
+bool is_at_work() noexcept;
 
 }  // namespace robomill::faults
 

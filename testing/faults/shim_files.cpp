@@ -103,6 +103,7 @@ mode_t mode_of(int flags, va_list rest) noexcept {
 int open_counted(int folder, const char* path, int flags, mode_t mode) noexcept {
   const bool counted = counts(folder, path);
   if (counted) {
+    note_open();
     const Verdict verdict = next(makes_or_writes(flags) ? Call::create : Call::open, path);
     if (verdict.error != 0) return failed(verdict.error);
   }

@@ -15,7 +15,7 @@ namespace robomill::faults {
 namespace {
 
 bool fails() noexcept {
-  if (!is_in_main() || next(Call::allocate, "").error == 0) return false;
+  if (!is_at_work() || next(Call::allocate, "").error == 0) return false;
   errno = ENOMEM;
   return true;
 }
