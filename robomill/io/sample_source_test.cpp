@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sndfile.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -231,6 +234,33 @@ TEST(SampleSource, AReadThatFailsIsNoEnd) {
   ::close(ends[0]);
   EXPECT_EQ(text, "standard input: cannot be read to its end. Connection reset by peer");
   EXPECT_EQ(samples, (std::vector<float>{1, 2, 3, 4}));
+}
+
+// A writer that writes at once would be ended by a first reader that goes.
+TEST(SampleSource, OpensANamedPipeOnce) {
+  const test::Folder folder;
+  const std::filesystem::path pipe = folder.at("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  constexpr int rows = 5000;
+  int written = 0;
+  std::atomic<bool> done{false};
+  std::jthread writer([&] {
+    int end = -1;
+    while ((end = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) < 0) {
+    }
+    ::fcntl(end, F_SETFL, 0);  // from here on it waits
+    while (written < rows && ::write(end, "1,2\n", 4) == 4) ++written;
+    ::close(end);
+    while (!done) ::close(::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));  // a second reader would wait
+  });
+  std::vector<float> samples;
+  EXPECT_NO_THROW(samples = read(pipe, named({"1"})));
+  done = true;
+  writer.join();
+  std::signal(SIGPIPE, before);
+  EXPECT_EQ(written, rows);
+  EXPECT_EQ(samples.size(), static_cast<std::size_t>(rows));
 }
 
 TEST(SampleSource, NumbersPickAmongRawColumns) {

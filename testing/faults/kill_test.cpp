@@ -3,11 +3,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -17,7 +15,6 @@
 #include "app/monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
 #include "testing/faults/judge.hpp"
-#include "testing/serve/http_client.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::faults {
@@ -66,7 +63,7 @@ TEST(Kill, LeavesWholeLinesOfAStream) {
                                              "--quiet", "-o", "events.jsonl"}),
                           folder.at("out.txt"), folder.at("err.txt"));
     const test::Process samples(
-        {"sh", "-c", "cat '" + (work / "cut.csv").string() + "' >'" + (work / "pipe.csv").string() + "'"},
+        {"sh", "-c", "exec cat '" + (work / "cut.csv").string() + "' >'" + (work / "pipe.csv").string() + "'"},
         folder.at("cat.txt"), folder.at("cat.txt"));
     ASSERT_TRUE(test::wait_for([&] { return !test::slurp(events).empty() || !monitor.running(); }));
     sleep_s(0.05 * random.uniform());
@@ -80,64 +77,6 @@ TEST(Kill, LeavesWholeLinesOfAStream) {
     }
   }
   EXPECT_GT(all, 20U);
-}
-
-/// A server that is asked to replace a file again and again.
-class KillServe : public testing::Test {
- protected:
-  void start() {
-    server_ = std::make_unique<test::Process>(robomill_in(folder_.path() / "work", {"serve", ".", "--port", "0"}),
-                                              folder_.at("out.txt"), folder_.at("err.txt"));
-    ASSERT_TRUE(test::wait_for([this] { return port() > 0; })) << test::slurp(folder_.at("err.txt"));
-    const std::string page = test::http_ask(port(), "GET", "/").body;
-    const std::size_t token = page.find("\"token\":\"") + 9;
-    token_ = page.substr(token, page.find('"', token) - token);
-  }
-  [[nodiscard]] int port() const {
-    const std::string said = test::slurp(folder_.at("out.txt"));
-    const std::size_t at = said.find("http://127.0.0.1:");
-    return at == std::string::npos || said.find("/\n", at) == std::string::npos ? 0 : std::stoi(said.substr(at + 17));
-  }
-  /// One of the contents that are written by turns: a megabyte of one letter.
-  static std::string content(char letter) { return "# " + std::string(900'000, letter) + "\n"; }
-
-  test::Folder folder_;
-  std::unique_ptr<test::Process> server_;
-  std::string token_;
-};
-
-TEST_F(KillServe, LeavesWholeFiles) {
-  const fs::path work = folder_.path() / "work", file = work / "notes.toml";
-  fs::create_directory(work);
-  Random random(9);
-  int replaced = 0;
-  for (int turn = 0; turn < test::seeds(100); ++turn) {
-    restore(work, {{"notes.toml", content('a')}});
-    start();
-    if (HasFatalFailure()) return;
-    const int port_now = port();
-    std::atomic<int> taken{0};
-    std::jthread client([&](const std::stop_token& stop) {
-      while (!stop.stop_requested()) {
-        const char letter = static_cast<char>('b' + taken % 25);
-        test::HttpAnswer answer = test::http_ask(port_now, "GET", "/api/file?path=notes.toml");
-        answer = test::http_ask(port_now, "PUT", "/api/file?path=notes.toml",
-                                {{"X-Robomill-Token", token_}, {"If-Match", answer.headers["etag"]}}, content(letter));
-        if (answer.status != 200) return;
-        ++taken;
-      }
-    });
-    sleep_s(0.02 + 0.1 * random.uniform());
-    server_->signal(SIGKILL);
-    (void)server_->wait();
-    client.request_stop();
-    client.join();
-    const std::string now = test::slurp(file);
-    ASSERT_EQ(now.size(), content('a').size()) << "after " << taken;
-    EXPECT_EQ(now, content(now[2]));
-    replaced += taken;
-  }
-  EXPECT_GT(replaced, 0);
 }
 
 }  // namespace kill_test

@@ -96,15 +96,18 @@ Place::~Place() {
   ::munmap(report_, sizeof(Report));
 }
 
-Outcome Place::run(const std::string& arguments, const Fault& fault, bool count_stdout) {
+std::vector<std::string> Place::words(const std::string& arguments, const Fault& fault, bool count_stdout) {
   clear(*report_);
   std::string environment = "LD_PRELOAD=" + programs_.shim.string() + " " + report_variable + "=" +
                             (base_ / "report").string() + " " + folder_variable + "=" + folder_.string() + " " +
                             fault_variable + "=" + std::to_string(static_cast<int>(fault.kind)) + ":" +
                             std::to_string(fault.n);
   if (count_stdout) environment += std::string(" ") + stdout_variable + "=1";
-  Outcome outcome = ended(arguments, environment, base_ / "out.txt");
-  outcome.out = test::slurp(base_ / "out.txt");
+  return words_of(command(arguments, environment));
+}
+
+Outcome Place::counted() const {
+  Outcome outcome;
   for (std::size_t i = 0; i < kind_count; ++i) outcome.calls.at(i) = report_->calls.at(i);
   outcome.reached = report_->reached > 0;
   outcome.call = static_cast<Call>(report_->call.load());
@@ -114,8 +117,17 @@ Outcome Place::run(const std::string& arguments, const Fault& fault, bool count_
   return outcome;
 }
 
+Outcome Place::run(const std::string& arguments, const Fault& fault, bool count_stdout) {
+  const Outcome end = ended(words(arguments, fault, count_stdout), base_ / "out.txt");
+  Outcome outcome = counted();
+  outcome.exit = end.exit;
+  outcome.err = end.err;
+  outcome.out = test::slurp(base_ / "out.txt");
+  return outcome;
+}
+
 Outcome Place::run_onto(const std::string& arguments, const fs::path& device) {
-  return ended(arguments, "", device);
+  return ended(words_of(command(arguments, "")), device);
 }
 
 Outcome Place::run_killed(const std::string& arguments, double after_s) {
@@ -133,10 +145,9 @@ std::string Place::command(const std::string& arguments, const std::string& envi
          " --threads 1";
 }
 
-Outcome Place::ended(const std::string& arguments, const std::string& environment, const fs::path& out) {
-  test::Process process(
-      words_of(std::string("timeout --signal=KILL ") + most_seconds + " " + command(arguments, environment)), out,
-      base_ / "err.txt");
+Outcome Place::ended(std::vector<std::string> words, const fs::path& out) {
+  words.insert(words.begin(), {"timeout", "--signal=KILL", most_seconds});
+  test::Process process(std::move(words), out, base_ / "err.txt");
   Outcome outcome;
   outcome.exit = process.wait();
   outcome.err = test::slurp(base_ / "err.txt");

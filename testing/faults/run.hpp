@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "testing/faults/fault.hpp"
 
@@ -50,6 +51,9 @@ class Place {
   /// @param arguments     of robomill, with blanks between them; they end with --threads 1, so that calls have an order
   /// @param count_stdout  the fault may happen to standard output too
   Outcome run(const std::string& arguments, const Fault& fault, bool count_stdout);
+  /// The words of a command that does so, and what it has counted so far; one command at a time.
+  [[nodiscard]] std::vector<std::string> words(const std::string& arguments, const Fault& fault, bool count_stdout);
+  [[nodiscard]] Outcome counted() const;
   /// Without the shim, its standard output a device.
   Outcome run_onto(const std::string& arguments, const std::filesystem::path& device);
   /// Without the shim, killed after a time unless it has ended.
@@ -57,7 +61,7 @@ class Place {
 
  private:
   [[nodiscard]] std::string command(const std::string& arguments, const std::string& environment) const;
-  Outcome ended(const std::string& arguments, const std::string& environment, const std::filesystem::path& out);
+  Outcome ended(std::vector<std::string> words, const std::filesystem::path& out);
 
   Programs programs_;
   std::filesystem::path base_, folder_;
