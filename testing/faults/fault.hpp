@@ -26,13 +26,25 @@ constexpr std::array<Kind, kind_count> all_kinds = {Kind::no_space,    Kind::io_
 
 /// What was called. Opening to read and opening to write differ, since a full disk can still be read. Only what was
 /// opened to write is closed with consequences.
-enum class Call : unsigned char { open, create, read, write, sync, close, rename, truncate, make_folder, allocate };
-constexpr std::size_t call_count = 10;
-constexpr std::array<const char*, call_count> call_names = {"open",  "create", "read",     "write",       "sync",
-                                                            "close", "rename", "truncate", "make folder", "allocate"};
+enum class Call : unsigned char {
+  open,
+  create,
+  read,
+  write,
+  print,
+  sync,
+  close,
+  rename,
+  truncate,
+  make_folder,
+  allocate
+};
+constexpr std::size_t call_count = 11;
+constexpr std::array<const char*, call_count> call_names = {
+    "open", "create", "read", "write", "print", "sync", "close", "rename", "truncate", "make folder", "allocate"};
 
-/// Whether a kind can happen to a call. EINTR of an open to read is left out: the program's signal handlers restart it
-/// (SA_RESTART).
+/// Whether a kind can happen to a call. EINTR of opening to read and of printing to standard output is left out: the
+/// program's signal handlers restart them (SA_RESTART), and streams of the C library do not go on after it.
 constexpr bool applies(Kind kind, Call call) {
   const bool allocates = call == Call::allocate;
   const bool only_reads = call == Call::open || call == Call::read;
@@ -47,9 +59,10 @@ constexpr bool applies(Kind kind, Call call) {
     case Kind::disk_full:
       return !allocates && !only_reads && call != Call::close && call != Call::rename;
     case Kind::short_write:
-      return call == Call::write;
+      return call == Call::write || call == Call::print;
     case Kind::interrupted:
-      return !allocates && call != Call::open && call != Call::rename && call != Call::make_folder;
+      return !allocates && call != Call::open && call != Call::print && call != Call::rename &&
+             call != Call::make_folder;
   }
   return false;
 }

@@ -59,6 +59,7 @@ class Failures {
     text = "call " + std::to_string(judgement.fault.n) + ", " + judgement.outcome.file + ", exit " +
            std::to_string(judgement.outcome.exit) + ": " + judgement.text;
   }
+  void add_unsynced(const Case& which) { seen_[std::string(which.arguments) + ", loss of power"].first = 1; }
   void print() const {
     std::printf("\n");
     for (const auto& [key, value] : seen_) {
@@ -90,6 +91,7 @@ void run_case(Place& place, const Case& which, int tenths, Failures& failures) {
     print(full, which.verb, which.ending, "/dev/full");
   }
   const Outcome& whole = judge.undisturbed();
+  if (whole.unsynced_files + whole.unsynced_folders > 0) failures.add_unsynced(which);
   std::printf("| %s | %s | loss of power | unsynced: %d files, %d folders |\n", which.verb, which.ending,
               static_cast<int>(whole.unsynced_files), static_cast<int>(whole.unsynced_folders));
 }

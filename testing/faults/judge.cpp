@@ -110,7 +110,7 @@ Judgement Judge::run_onto_full_device() {
   judgement.fault = {Kind::disk_full, 1};
   judgement.outcome = place_.run_onto(case_.arguments, "/dev/full");
   judgement.outcome.reached = true;
-  judgement.outcome.call = Call::write;
+  judgement.outcome.call = Call::print;
   judgement.outcome.file = "/dev/full";
   look(judgement, false);
   judgement.complete = false;

@@ -44,7 +44,8 @@ struct Unsynced {
   }
   bool remove(std::uint64_t inode) noexcept {
     for (auto& each : inodes) {
-      if (each.compare_exchange_strong(inode, 0)) return true;
+      std::uint64_t there = inode;
+      if (each.compare_exchange_strong(there, 0)) return true;
     }
     return false;
   }
@@ -135,7 +136,7 @@ Verdict next(Call call, const char* file) noexcept {
     case Kind::no_memory:
       return {.error = ENOMEM};
     case Kind::killed:
-      if (call == Call::write) return {.half = true, .dies = true};
+      if (call == Call::write || call == Call::print) return {.half = true, .dies = true};
       die();
     case Kind::no_space:
     case Kind::disk_full:
@@ -181,7 +182,7 @@ Verdict next(Call call, int descriptor) noexcept {
   if (!counts(descriptor)) return {};
   char name[256];
   name_of(descriptor, name, sizeof(name));
-  return next(call, name);
+  return next(call == Call::write && descriptor == STDOUT_FILENO ? Call::print : call, name);
 }
 
 bool counts(int folder, const char* path) noexcept {
