@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <sstream>
@@ -14,6 +17,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
@@ -56,6 +60,10 @@ struct CommandLine {
   std::function<Exit(Progress&)> chosen;
 
   CommandLine();
+  /// Where the verb writes, in whatever option that stands.
+  [[nodiscard]] std::vector<std::filesystem::path> outputs() const {
+    return {common.to_stdout() ? std::string() : common.output, common.report, couple.holder_out, couple.frfs};
+  }
   void add_first_verbs();
   void add_structure_verbs();
   void add_cut_verbs();
@@ -316,6 +324,12 @@ int report_error(const char* text, int exit) {
   return exit;
 }
 
+/// By errno.
+int report_unwritten() {
+  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  return report_error(("standard output cannot be written" + why).c_str(), bad_input);
+}
+
 /// Help to standard output, or what is wrong with the arguments, whose bytes may be anybody's.
 Exit report_usage(const CLI::App& parser, const CLI::ParseError& error) {
   std::stringstream out, err;
@@ -334,6 +348,7 @@ int run_chosen(int argc, char** argv) {
   }
   try {
     require_report_place(line.common.report);
+    const io::OutputPlaces outputs(line.outputs());
     set_thread_count(line.common.threads);
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
@@ -344,8 +359,18 @@ int run_chosen(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for this input", bad_input);
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return report_unwritten();
     return report_error(error.what(), bad_input);
   }
+}
+
+/// Closes standard output, where a full disk behind a redirection shows at the latest.
+int end_with(int exit) {
+  const bool said = exit == bad_input;
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return said ? exit : report_unwritten();
+  // One that was closed before took nothing.
+  return std::fclose(stdout) == 0 || errno == EBADF || said ? exit : report_unwritten();
 }
 
 }  // namespace
@@ -353,7 +378,7 @@ int run_chosen(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return robomill::app::run_chosen(argc, argv);
+    return robomill::app::end_with(robomill::app::run_chosen(argc, argv));
   } catch (...) {
     // Thrown before there is a verb to blame, or by the report of another error.
     std::fputs("robomill: cannot run\n", stderr);

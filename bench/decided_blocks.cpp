@@ -444,7 +444,8 @@ int run(const Settings& settings) {
     throw InvalidInput(settings.job.string(), "must have forces, cell and program, and no dynamics but the cell's");
   }
   const jobs::CellFile cell = jobs::read_cell(plan.job.cell, jobs::Robots::serial);
-  const jobs::DynamicsAt dynamics = jobs::dynamics_of_cell(cell, plan.warnings, plan.notes, plan.assumed);
+  constexpr std::array<bool, 3> pushed{true, true, true};  // it chooses warnings alone, which nobody reads here
+  const jobs::DynamicsAt dynamics = jobs::dynamics_of_cell(cell, pushed, plan.warnings, plan.notes, plan.assumed);
   run_as_programmed(cell, dynamics, plan);
   const jobs::ForcesResult forces = *plan.forces;
   const jobs::ProgramBlocks blocks = *plan.blocks;

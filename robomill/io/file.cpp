@@ -1,5 +1,6 @@
 #include "robomill/io/file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,6 +15,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
+#include "robomill/io/folder_change.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/io/pending_names.hpp"
 
 namespace robomill::io {
@@ -23,14 +26,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void reject(const fs::path& path, std::string rule, std::string hint = {}) {
   throw InvalidInput(path.string(), std::move(rule), std::move(hint));
-}
-
-void write_all(const fs::path& place, const fs::path& named, std::string_view content) {
-  errno = 0;
-  std::ofstream out(place, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out) reject(named, "cannot be written", errno != 0 ? std::strerror(errno) : "");
 }
 
 /// A link stays a link: what it points to is replaced, or taken away.
@@ -78,6 +73,8 @@ Format format_of(const fs::path& path) {
 
 std::ifstream open_file(const fs::path& path) {
   require_inside(path);
+  require_no_output(path);
+  require_completed(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) reject(path, "there is no such file");
@@ -110,13 +107,17 @@ std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
 void write_file(const fs::path& path, std::string_view content) {
   require_inside(path);
   require_regular_if_confined(path);
-  if (is_special(path)) {
-    write_all(path, path, content);
+  if (!is_special(path)) {
+    PendingFile pending(path);
+    pending.write(content);
+    pending.commit();
     return;
   }
-  PendingFile pending(path);
-  write_all(pending.temporary(), path, content);
-  pending.commit();
+  int error = 0;
+  Descriptor device = open_descriptor(path.c_str(), O_WRONLY | O_TRUNC, error);
+  require_success(path, error);
+  require_success(path, write_all(device.get(), content));
+  require_success(path, device.close());
 }
 
 void make_folder(const fs::path& folder) {
@@ -145,26 +146,77 @@ PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   if (path_.filename().empty() || (!folder.empty() && !fs::is_directory(folder, ignored))) {
     reject(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));
   }
-  temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
-                                    path_.extension().string());
-  register_pending(temporary_);
+  int error = EEXIST;
+  while (error == EEXIST) {  // a killed process of the same number may have left one
+    temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
+                                      path_.extension().string());
+    register_pending(temporary_);
+    file_ = open_descriptor(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL, error);
+    if (error != 0) forget_pending(temporary_);
+  }
+  require_success(path_, error);
 }
 
 PendingFile::~PendingFile() {
-  std::error_code ignored;
+  discard();
+}
+
+void PendingFile::discard() noexcept {
   if (temporary_.empty()) return;
-  fs::remove(temporary_, ignored);
+  static_cast<void>(remove_name(temporary_));
   forget_pending(temporary_);
+  temporary_.clear();
+}
+
+bool PendingFile::keep(int error) noexcept {
+  if (error_ == 0) error_ = error;
+  return error_ == 0;
+}
+
+void PendingFile::require_written() const {
+  require_success(path_, error_);
+}
+
+void PendingFile::write(std::string_view bytes) {
+  write_at(size_, bytes);
+  require_written();
+}
+
+bool PendingFile::write_at(std::uint64_t offset, std::string_view bytes) noexcept {
+  if (error_ != 0 || !keep(write_all_at(file_.get(), bytes, offset))) return false;
+  size_ = std::max<std::uint64_t>(size_, offset + bytes.size());
+  return true;
+}
+
+std::size_t PendingFile::read_at(std::uint64_t offset, std::span<char> bytes) noexcept {
+  std::size_t count = 0;
+  keep(read_all_at(file_.get(), bytes, offset, count));
+  return count;
+}
+
+bool PendingFile::resize(std::uint64_t size) noexcept {
+  if (error_ != 0 || !keep(resize_file(file_.get(), size))) return false;
+  size_ = size;
+  return true;
+}
+
+void PendingFile::prepare() {
+  if (!file_.is_open()) return;
+  std::error_code ignored;
+  const fs::file_status old = fs::status(path_, ignored);
+  // A file system without permissions keeps none.
+  if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), ignored);
+  keep(synchronise(file_.get()));
+  keep(file_.close());
+  require_written();
 }
 
 void PendingFile::commit() {
-  std::error_code error;
-  const fs::file_status old = fs::status(path_, error);
-  if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), error);
-  fs::rename(temporary_, path_, error);
-  if (error) reject(path_, "cannot be written", error.message());
+  prepare();
+  require_success(path_, rename_file(temporary_, path_));
   forget_pending(temporary_);
   temporary_.clear();
+  require_success(path_, synchronise_folder(path_.parent_path()));
 }
 
 LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(live) {
@@ -172,20 +224,25 @@ LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(liv
   require_regular_if_confined(path_);
   if (!is_special(path_)) pending_.emplace(path_);
   if (live) pending_.reset();  // it has checked the place
-  file_.open(pending_ ? pending_->temporary() : path_, std::ios::binary | std::ios::trunc);
+  if (pending_) return;
+  file_.open(path_, std::ios::binary | std::ios::trunc);
   if (!file_) reject(path_, "cannot be written");
 }
 
 bool LineFile::write(std::string_view line) {
+  if (pending_) return pending_->write_at(pending_->size(), line);
   file_.write(line.data(), static_cast<std::streamsize>(line.size()));
   if (live_) file_.flush();
   return file_.good();
 }
 
 void LineFile::close() {
+  if (pending_) {
+    pending_->commit();
+    return;
+  }
   file_.close();
   if (!file_) reject(path_, "could not be written to its end", "Is the disk full?");
-  if (pending_) pending_->commit();
 }
 
 }  // namespace robomill::io

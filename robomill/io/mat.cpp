@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <matio.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cstdint>
@@ -13,7 +15,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/child.hpp"
+#include "robomill/io/descriptor.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/hdf5_input.hpp"
+#include "robomill/io/mat_layout.hpp"
 
 namespace robomill::io {
 namespace {
@@ -32,6 +37,25 @@ constexpr double most_packed = 1100.0;
 
 /// Beyond what is in use already and what the file's size asks for [bytes].
 constexpr std::size_t most_memory = std::size_t{64} << 20;
+
+/// Version 7.3 is an HDF5 file behind a header of version 5; without that header it is one too.
+bool is_hdf5(std::string_view content) {
+  constexpr std::size_t version = 124;
+  const std::string_view words = content.size() < 128 ? std::string_view() : content.substr(version, 4);
+  return words == std::string_view("\0\2IM", 4) || words == std::string_view("\2\0MI", 4) ||
+         content.starts_with("\x89HDF\r\n\x1a\n");
+}
+
+/// All that was written into memory; less where that could not be read.
+std::string content_of(const Descriptor& memory) {
+  struct stat status = {};
+  if (::fstat(memory.get(), &status) != 0) return {};
+  std::string out(static_cast<std::size_t>(status.st_size), '\0');
+  std::size_t count = 0;
+  if (read_all_at(memory.get(), out, 0, count) != 0) return {};
+  out.resize(count);
+  return out;
+}
 
 /// How the child's answer begins.
 constexpr char answered = '+', rejected = '-';
@@ -180,12 +204,19 @@ std::vector<MatVariable> unpack(std::string_view bytes) {
 }  // namespace
 
 std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
-  const std::size_t file_bytes = read_file(path).size();
+  const std::string content = read_file(path);
+  const std::size_t file_bytes = content.size();
+  const auto layout = mat_layout(content);
+  if (layout && !layout->whole) {
+    throw InvalidInput(path.string(), fmt::format("ends within its variable {}", layout->variables + 1),
+                       "Was it cut off while it was written or copied?");
+  }
   const std::lock_guard lock(library());
   // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
   // for gigabytes.
   const auto packed = run_in_child(most_memory + 64 * file_bytes, [&]() -> std::string {
     try {
+      if (is_hdf5(content)) require_self_contained_hdf5(path);
       return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
     } catch (const InvalidInput& error) {
       return rejected + error.parts().rule;
@@ -199,7 +230,9 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {
   const std::lock_guard lock(library());
   PendingFile pending(path);
-  const std::string place = pending.temporary().string();
+  // The library does not report a write that fails: it writes into memory, where none does.
+  const Descriptor memory(::memfd_create("robomill", MFD_CLOEXEC));
+  const std::string place = fmt::format("/proc/self/fd/{}", memory.get());
   // A header of our own, since the library's carries the date.
   MatFile mat(Mat_CreateVer(place.c_str(), "MATLAB 5.0 MAT-file, robomill", MAT_FT_MAT5), &Mat_Close);
   if (!mat) throw InvalidInput(path.string(), "cannot be written");
@@ -218,6 +251,12 @@ void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>
     }
   }
   if (Mat_Close(mat.release()) != 0) throw InvalidInput(path.string(), "cannot be written");
+  const std::string content = content_of(memory);
+  const auto layout = mat_layout(content);
+  if (!layout || !layout->whole || layout->variables != variables.size()) {
+    throw InvalidInput(path.string(), "cannot be written", "Is there enough memory?");
+  }
+  pending.write(content);
   pending.commit();
 }
 

@@ -70,6 +70,45 @@ TEST(Mat, GivesBackWhatItWrote) {
   EXPECT_EQ(read_file(folder.at("b.mat")), once);
 }
 
+TEST(Mat, ThatCannotBeWrittenLeavesTheOldOne) {
+  const Folder folder;
+  const MatVariable one{.name = "x", .re = Eigen::MatrixXd::Random(300, 2)};
+  write_mat(folder.at("a.mat"), {one});
+  const std::size_t size = read_file(folder.at("a.mat")).size();
+  for (const std::size_t room : {std::size_t{0}, std::size_t{1}, std::size_t{128}, size / 2, size - 1}) {
+    const std::filesystem::path path = folder.file("a.mat", "old");
+    const test::FileSizeLimit full(room);
+    EXPECT_NE(rejection([&] { write_mat(path, {one}); }).find("a.mat: cannot be written"), std::string::npos) << room;
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+// Of version 4, 5 and 7.3, wherever it was cut but between two variables.
+TEST(Mat, ThatWasCutOffIsRejected) {
+  const Folder folder;
+  for (const mat_ft version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
+    write_foreign(folder.at("a.mat"), version, MAT_COMPRESSION_NONE);
+    const std::string whole = read_file(folder.at("a.mat"));
+    const std::size_t all = read_mat(folder.at("a.mat")).size();
+    int between = 0;
+    for (std::size_t size = whole.size() - 1; size > 150; size -= std::max<std::size_t>(1, whole.size() / 300)) {
+      const auto cut = folder.file("cut.mat", std::string_view(whole).substr(0, size));
+      try {
+        EXPECT_LE(read_mat(cut).size(), all);
+        ++between;
+      } catch (const InvalidInput&) {
+      }
+    }
+    EXPECT_LE(between, 4) << version;
+    const auto half = folder.file("half.mat", std::string_view(whole).substr(0, whole.size() - 5));
+    EXPECT_NE(rejection([&] { static_cast<void>(read_mat(half)); })
+                  .find(version == MAT_FT_MAT73 ? "is a damaged HDF5 file, or one that was cut off"
+                                                : "ends within its variable"),
+              std::string::npos);
+  }
+}
+
 TEST(Mat, ReadsEveryVersion) {
   const Folder folder;
   for (const mat_ft version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {

@@ -100,6 +100,7 @@ class RecordSource : public SampleSource {
   RecordSource(const std::filesystem::path& path, const SampleColumns& columns) {
     Record record = read_record(path, {.time = {}, .scale = columns.scale});
     sample_rate_hz_ = record.sample_rate_hz;
+    notes_ = record.notes;
     check_rate(sample_rate_hz_, columns.sample_rate_hz, 1e-3, path.string());
     const std::vector<std::size_t> pick = pick_columns(columns, record.names, record.columns.size(), path.string());
     for (const std::size_t column : pick) columns_.push_back(std::move(record.columns[column]));

@@ -164,6 +164,35 @@ TEST(SampleSource, IntegersAreScaledAndClipAtTheirFullScale) {
   EXPECT_EQ(all(*source), (std::vector<float>{0.0F, 25.0F, -50.0F, static_cast<float>(full)}));
 }
 
+TEST(SampleSource, ThatCannotBeWrittenLeavesTheOldOne) {
+  const test::Folder folder;
+  const std::vector<float> samples(4000, 0.5F);
+  write_wav(folder.at("a.wav"), samples, 2, 5000.0);
+  const std::size_t size = read_file(folder.at("a.wav")).size();
+  for (const std::size_t room : {std::size_t{0}, std::size_t{20}, size / 2, size - 1}) {
+    const auto path = folder.file("a.wav", "old");
+    const test::FileSizeLimit full(room);
+    EXPECT_NE(test::rejection([&] { write_wav(path, samples, 2, 5000.0); }).find("a.wav: cannot be written"),
+              std::string::npos)
+        << room;
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+// What its file says of a recording comes with it.
+TEST(SampleSource, SaysThatARecordingWasCutOff) {
+  const test::Folder folder;
+  write_wav(folder.at("a.wav"), std::vector<float>(4000, 0.5F), 1, 4000.0);
+  const std::string whole = read_file(folder.at("a.wav"));
+  EXPECT_TRUE(open_samples(folder.at("a.wav"), named({"1"}))->notes().empty());
+  const auto cut = folder.file("cut.wav", std::string_view(whole).substr(0, whole.size() - 8000));
+  const auto source = open_samples(cut, named({"1"}));
+  ASSERT_EQ(source->notes().size(), 1U);
+  EXPECT_NE(source->notes().front().find("holds 0.5 s of the 1 s that its header states"), std::string::npos);
+  EXPECT_EQ(all(*source).size(), 2000U);
+}
+
 TEST(SampleSource, ReadsMat) {
   const test::Folder folder;
   write_mat(folder.at("m.mat"), {{"ax", Eigen::Vector3d(1, 2, 3)},

@@ -147,28 +147,9 @@ double volts_in(std::string_view unit) {
 
 bool is_unit(std::string_view text) {
   // What a column beside force and response may be in; the degree sign as plain() leaves it.
-  static constexpr std::string_view others[] = {"-",
-                                                "%",
-                                                "ue",
-                                                "strain",
-                                                "um/m",
-                                                "deg",
-                                                "\xB0",
-                                                "rpm",
-                                                "1/min",
-                                                "hz",
-                                                "khz",
-                                                "\xB0"
-                                                "c",
-                                                "degc",
-                                                "ma",
-                                                "pa",
-                                                "kpa",
-                                                "mpa",
-                                                "bar",
-                                                "kw",
-                                                "kg",
-                                                "min"};
+  static constexpr std::string_view others[] = {"-",   "%",     "ue",  "strain", "um/m",     "deg",  "\xB0",
+                                                "rpm", "1/min", "hz",  "khz",    "\xB0\x63", "degc", "ma",
+                                                "pa",  "kpa",   "mpa", "bar",    "kw",       "kg",   "min"};
   constexpr std::string_view epsilon = "\xCE\xB5";  // of strains, in UTF-8
   if (seconds_in(text) > 0.0 || volts_in(text) > 0.0 || text.find(epsilon) != std::string_view::npos) return true;
   return parse_unit(text).quantity != Quantity::unknown || std::ranges::find(others, plain(text)) != std::end(others);

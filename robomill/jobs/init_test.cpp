@@ -132,10 +132,10 @@ TEST_F(Init, WithoutAnExampleWhatNobodySaidIsAsked) {
                                                    {Template::cell, "robot.model: is missing"},
                                                    {Template::assembly, "tool[1].length_mm: is missing"},
                                                    {Template::forces, "tool.kind: is missing"}};
-  for (const auto& [kind, asked] : asks) {
-    const InitFiles files = made({.kind = kind});
-    const std::string rejected = test::rejection([&] { read(kind, files.files.front().path); });
-    EXPECT_NE(rejected.find(asked), std::string::npos) << name_in(template_names, kind) << ": " << rejected;
+  for (const auto& ask : asks) {
+    const InitFiles files = made({.kind = ask.first});
+    const std::string rejected = test::rejection([&] { read(ask.first, files.files.front().path); });
+    EXPECT_NE(rejected.find(ask.second), std::string::npos) << name_in(template_names, ask.first) << ": " << rejected;
     EXPECT_NE(rejected.find(".toml:"), std::string::npos) << rejected;
     EXPECT_NE(rejected.find("This line is a comment: write your own value"), std::string::npos) << rejected;
     EXPECT_FALSE(std::filesystem::exists(at("example_hit_x.csv")));

@@ -54,7 +54,7 @@ double half_extent(const Eigen::Matrix3Xd& path) {
   constexpr int most_turns = 20;
   double widest = 0.0;
   for (int code = 14; code < 27; ++code) {  // of the 26 neighbours of a cube's middle one of each opposite pair
-    Eigen::Vector3d along(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
+    Eigen::Vector3d along = Eigen::Vector3i(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1).cast<double>();
     double width = 0.0;
     for (int turn = 0; turn < most_turns; ++turn) {
       Eigen::Index low = 0, high = 0;

@@ -6,6 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/hdf5_output.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {
@@ -72,18 +73,22 @@ class Hdf5 final : public SampleFile {
 
   void state_collisions(const std::string& found) override { collisions_ = found; }
 
-  void commit() override {
+  io::PendingFile& finish() override {
     text(file_.get(), "collisions", collisions_);
     flush();
     close();
     require(file_.reset());
-    pending_.commit();
+    pending_.prepare();
+    require(io::is_whole_hdf5(pending_.temporary()));
+    return pending_;
   }
 
  private:
   std::string collisions_ = unchecked_collisions;
 
-  void require(bool good) const {
+  /// What the library says, and what the system said meanwhile.
+  void require(bool good) {
+    if (pending_.failed()) pending_.prepare();  // says why
     if (!good) throw InvalidInput(path_.string(), "cannot be written", "Is there room on the disk?");
   }
 
@@ -96,7 +101,7 @@ class Hdf5 final : public SampleFile {
     close();
     require(file_.reset());
     rows_ = 0;
-    file_ = Id(H5Fcreate(pending_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    file_ = Id(io::create_hdf5(pending_), H5Fclose);
     require(file_.good());
     text(file_.get(), "program", info_.program);
     text(file_.get(), "cell", info_.cell);
@@ -136,13 +141,13 @@ class Hdf5 final : public SampleFile {
     number(set, "max_jerk", limits.max_jerk[joint]);
   }
 
-  void number(hid_t owner, const char* name, double value) const {
+  void number(hid_t owner, const char* name, double value) {
     const Id space(H5Screate(H5S_SCALAR), H5Sclose);
     const Id attribute(H5Acreate2(owner, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0);
   }
 
-  void text(hid_t owner, const char* name, const std::string& value) const {
+  void text(hid_t owner, const char* name, const std::string& value) {
     const Id space(H5Screate(H5S_SCALAR), H5Sclose);
     const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
     require(H5Tset_size(type.get(), value.size() + 1) >= 0 && H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0);
