@@ -263,7 +263,7 @@ std::vector<Case> all_cases() {
       {"cell check", "report html", "cell check cell.toml --report check.html"},
       {"cell check", "json of a program", "cell check cell.toml --program slot.ngc -o check.json"},
       {"smooth", "csv", "smooth part.ngc --cell cell.toml -o t.csv"},
-      {"smooth", "h5", "smooth part.ngc --cell cell.toml -o t.h5"},
+      {"smooth", "h5", "smooth part.ngc --cell cell.toml -o t.h5", "", hdf5},
       {"smooth", "src", "smooth part.ngc --cell cell.toml -o t.src"},
       {"smooth", "mod", "smooth part.ngc --cell cell.toml -o t.mod"},
       {"smooth", "script", "smooth part.ngc --cell cell.toml -o t.script"},

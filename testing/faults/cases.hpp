@@ -11,7 +11,8 @@ enum Trait : unsigned {
   to_stdout = 1,  ///< standard output counts, and is compared
   is_new = 2,     ///< there is no older result: the verb rejects one, or takes another name
   together = 4,   ///< all outputs are those of one run
-  goes_on = 8     ///< after an input or an output that fails it says so and exits with 0
+  goes_on = 8,    ///< after an input or an output that fails it says so and exits with 0
+  hdf5 = 16       ///< written by HDF5, which without memory leaves chunks uncompressed, crashes, or does not end
 };
 
 struct Case {
