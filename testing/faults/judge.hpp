@@ -1,5 +1,6 @@
 #pragma once
 // What a run with a fault must have left behind.
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
