@@ -211,13 +211,19 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
     throw InvalidInput(path.string(), fmt::format("ends within its variable {}", layout->variables + 1),
                        "Was it cut off while it was written or copied?");
   }
+  // What the libraries cannot read they take for zeros: they get it from memory, into which all of it was read.
+  const Descriptor memory(::memfd_create("robomill", MFD_CLOEXEC));
+  const std::filesystem::path place = fmt::format("/proc/self/fd/{}", memory.get());
+  if (write_all(memory.get(), content) != 0) {
+    throw InvalidInput(path.string(), "cannot be read", "Is there enough memory?");
+  }
   const std::lock_guard lock(library());
   // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
   // for gigabytes.
   const auto read = [&]() -> std::string {
     try {
-      if (is_hdf5(content)) require_self_contained_hdf5(path);
-      return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
+      if (is_hdf5(content)) require_self_contained_hdf5(place);
+      return answered + pack(read_variables(place, static_cast<double>(file_bytes)));
     } catch (const InvalidInput& error) {
       return rejected + error.parts().rule;
     }

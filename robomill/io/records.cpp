@@ -237,6 +237,7 @@ Record read_wav_record(const Path& path, double scale) {
       columns[i % channels].push_back(scale * block[i]);
     }
   }
+  require_read(file);
   if (columns.front().empty()) throw InvalidInput(path.string(), "holds no samples");
   for (const std::vector<double>& column : columns) record.columns.push_back(vector(column));
   return record;

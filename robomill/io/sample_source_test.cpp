@@ -3,10 +3,14 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sndfile.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -241,6 +245,51 @@ TEST(SampleSource, TakesBytesAsTheyCome) {
   const Pipe text("ax,ay\n1,2\n3,4\n", 1);
   EXPECT_EQ(all(*open_sample_stream(text.end(), "standard input", named({"ay"}), RawFormat::automatic)),
             (std::vector<float>{2, 4}));
+}
+
+// A peer that closes with bytes unread resets the connection: what came is no whole recording.
+TEST(SampleSource, AReadThatFailsIsNoEnd) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  ASSERT_EQ(::write(ends[1], "ax,ay\n1,2\n3,4\n", 14), 14);
+  ASSERT_EQ(::write(ends[0], "unread", 6), 6);
+  ::close(ends[1]);
+  std::vector<float> samples;
+  const std::string text = test::rejection([&] {
+    const auto source = open_sample_stream(ends[0], "standard input", named({"ax", "ay"}), RawFormat::csv);
+    SampleBlock block;
+    while (source->next(1, block)) samples.insert(samples.end(), block.samples.begin(), block.samples.end());
+  });
+  ::close(ends[0]);
+  EXPECT_EQ(text, "standard input: cannot be read to its end. Connection reset by peer");
+  EXPECT_EQ(samples, (std::vector<float>{1, 2, 3, 4}));
+}
+
+// A writer that writes at once would be ended by a first reader that goes.
+TEST(SampleSource, OpensANamedPipeOnce) {
+  const test::Folder folder;
+  const std::filesystem::path pipe = folder.at("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  constexpr int rows = 5000;
+  int written = 0;
+  std::atomic<bool> done{false};
+  std::jthread writer([&] {
+    int end = -1;
+    while ((end = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) < 0) {
+    }
+    ::fcntl(end, F_SETFL, 0);  // from here on it waits
+    while (written < rows && ::write(end, "1,2\n", 4) == 4) ++written;
+    ::close(end);
+    while (!done) ::close(::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));  // a second reader would wait
+  });
+  std::vector<float> samples;
+  EXPECT_NO_THROW(samples = read(pipe, named({"1"})));
+  done = true;
+  writer.join();
+  std::signal(SIGPIPE, before);
+  EXPECT_EQ(written, rows);
+  EXPECT_EQ(samples.size(), static_cast<std::size_t>(rows));
 }
 
 TEST(SampleSource, NumbersPickAmongRawColumns) {

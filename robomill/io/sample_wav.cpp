@@ -49,6 +49,7 @@ class WavSource : public SampleSource {
     block.samples.clear();
     buffer_.resize(frames * columns_);
     const sf_count_t count = sf_readf_float(file_.sound.get(), buffer_.data(), static_cast<sf_count_t>(frames));
+    if (count < static_cast<sf_count_t>(frames)) require_read(file_);
     for (std::size_t frame = 0; frame < static_cast<std::size_t>(std::max<sf_count_t>(count, 0)); ++frame) {
       for (const std::size_t column : pick_) {
         block.samples.push_back(static_cast<float>(scale_ * static_cast<double>(buffer_[frame * columns_ + column])));

@@ -99,16 +99,23 @@ SoundFile open_sound(const std::filesystem::path& path) {
     return std::filesystem::file_size(path, ignored);
   }();
   SoundFile out;
+  out.path = path;
   int error = 0;
   out.file = open_descriptor(path.c_str(), O_RDONLY, error);
   if (error != 0) throw InvalidInput(path.string(), "cannot be read", std::strerror(error));
   if (const auto length = wav_length(out.file.get(), file_bytes)) out.note = note_of(path, *length);
   out.sound.reset(sf_open_fd(out.file.get(), SFM_READ, &out.info, SF_FALSE));
   if (!out.sound) throw InvalidInput(path.string(), std::string("is no sound file: ") + sf_strerror(nullptr));
+  require_read(out);
   if (out.info.channels < 1 || out.info.samplerate < 1) {
     throw InvalidInput(path.string(), "has no channel or no sample rate");
   }
   return out;
+}
+
+void require_read(const SoundFile& file) {
+  if (sf_error(file.sound.get()) == SF_ERR_NO_ERROR) return;
+  throw InvalidInput(file.path.string(), "cannot be read to its end", sf_strerror(file.sound.get()));
 }
 
 }  // namespace robomill::io
