@@ -16,13 +16,13 @@ namespace {
 
 using namespace made_up;
 
-/// Ranges of speeds that end within a step of the search, which may fall between two of its speeds, are none.
+/// A range of speeds that is narrower than a step of the search may fall between two of its speeds: it counts as none.
 void leave_out_narrow(std::vector<double>& times) {
-  constexpr std::ptrdiff_t widest_narrow = 4;  // of the fine grid's speeds
+  constexpr std::ptrdiff_t speeds_a_step = 5;  // of the fine grid, with both ends
   for (auto begin = times.begin(); begin != times.end();) {
     const bool holds = std::isfinite(*begin);
     const auto end = std::find_if(begin, times.end(), [&](double time) { return std::isfinite(time) != holds; });
-    if (holds && end - begin <= widest_narrow) std::fill(begin, end, none);
+    if (holds && end - begin < speeds_a_step) std::fill(begin, end, none);
     begin = end;
   }
 }

@@ -146,7 +146,8 @@ double volts_in(std::string_view unit) {
 }
 
 bool is_unit(std::string_view text) {
-  // What a column beside force and response may be in; the degree sign as plain() leaves it.
+  // What a column beside force and response may be in; the degree sign as plain() leaves it. A c right behind \xB0
+  // would be read as one of its digits.
   static constexpr std::string_view others[] = {"-",   "%",     "ue",  "strain", "um/m",     "deg",  "\xB0",
                                                 "rpm", "1/min", "hz",  "khz",    "\xB0\x63", "degc", "ma",
                                                 "pa",  "kpa",   "mpa", "bar",    "kw",       "kg",   "min"};
