@@ -100,6 +100,7 @@ const std::atomic<bool>& stop_on_signal() {
     has_patience = ::timer_create(CLOCK_MONOTONIC, &event, &patience) == 0;
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) set_handler(number, on_signal);
     set_handler(SIGPIPE, on_broken_pipe);
+    set_handler(SIGXFSZ, SIG_IGN);  // a write beyond the limit of files' sizes fails, as on a full disk
     return true;
   }();
   static_cast<void>(set);

@@ -32,8 +32,6 @@ struct CostLimit {
   double operations = 6e11;  ///< ten minutes of one core
   double bytes = 2e9;
 };
-/// Of a server, which others use too: two minutes of one core, 1 GB.
-inline constexpr CostLimit served_cost_limit = {.operations = 1.2e11, .bytes = 1e9};
 /// Of those who know what they ask for.
 inline constexpr CostLimit no_cost_limit = {.operations = std::numeric_limits<double>::infinity(),
                                             .bytes = std::numeric_limits<double>::infinity()};

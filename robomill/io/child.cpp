@@ -11,23 +11,13 @@
 #include <csignal>
 #include <cstdint>
 #include <fstream>
-#include <string_view>
 
+#include "robomill/io/descriptor.hpp"
 #include "robomill/io/sandbox.hpp"
 #include "robomill/io/sanitized.hpp"
 
 namespace robomill::io {
 namespace {
-
-bool write_whole(int to, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(to, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
 
 /// Of the address space, which a child has from its parent; 0: none is known.
 std::uint64_t address_space_bytes() {
@@ -59,7 +49,7 @@ std::uint64_t address_space_bytes() {
     if (!readable.empty()) rights.readable.push_back(readable);
     static_cast<void>(restrict_files(rights));
     restrict_to_one_more_file();  // so that without Landlock too the file that is read leads to no other
-    if (write_whole(to, body())) status = 0;
+    if (write_all(to, body()) == 0) status = 0;
   } catch (...) {
     status = 1;
   }

@@ -36,7 +36,7 @@ class Marker {
       int error = 0;
       // What is no file of ours, a pipe say, is not waited for.
       out.file_ = open_descriptor(out.path_.c_str(), flags | O_NOFOLLOW | O_NONBLOCK, error);
-      if (error != 0 && (flags & O_CREAT) == 0) return std::nullopt;
+      if (error == ENOENT && (flags & O_CREAT) == 0) return std::nullopt;
       require_success(out.path_, error);
       while (::flock(out.file_.get(), lock) != 0) {
         if (errno == EINTR) continue;

@@ -19,6 +19,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/mat.hpp"
 #include "testing/support.hpp"
 

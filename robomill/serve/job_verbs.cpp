@@ -78,7 +78,7 @@ const std::vector<VerbOption> joint_options = {
 
 const std::vector<VerbOption> simulate_options = {
     {.name = "at", .does = "Spindle speed (rpm), axial depth (mm)", .takes = Takes::point, .required = true},
-    {.name = "seconds", .does = "How long to cut (2 s)", .takes = Takes::number, .above = 0, .at_most = 3600},
+    {.name = "seconds", .does = "How long to cut (2 s)", .takes = Takes::number, .above = 0},
     {.name = "sample_rate_hz", .does = "Sample rate of the output (10240 Hz)", .takes = Takes::number, .above = 0},
     flag_option("linear", "Without loss of contact, as lobes take the cut"),
     seed_option};
