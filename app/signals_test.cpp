@@ -109,12 +109,12 @@ TEST_F(Signals, EndEveryVerbWhereItCounts) {
   write("modes.toml", "[fit]\nmethod = \"pso\"\nmodes = 5\npso_particles = 30000\npso_max_iterations = 100000\n");
   const std::vector<std::string> verbs = {
       "lobes lobes.toml -o result.json",
-      "simulate lobes.toml --at 7000,1 --seconds 3600 -o result.csv",
+      "simulate lobes.toml --at 7000,1 --seconds 3600 --allow-large -o result.csv",
       "smooth slow.ngc --cell cell.toml -o result.csv",
       "forces forces.toml --program '" ROBOMILL_SOURCE_DIR
       "/examples/force-along-program/hollow.ngc' --cell '" ROBOMILL_SOURCE_DIR
       "/examples/force-along-program/cell.toml' -o result.csv",
-      "modes frf.csv --config modes.toml -o result.json",
+      "modes frf.csv --config modes.toml --allow-large -o result.json",
   };
   std::size_t next = 0;
   for (const std::string& verb : verbs) {

@@ -1,7 +1,7 @@
 // robomill monitor on a day of samples that come through a pipe as fast as it takes them, while what stands around it
 // fails again and again: the broker of its events is killed, the disk is full, the clocks jump and slew, the spindle
-// stands still, the sensor goes dead or sends nothing. Ends with 1 where an event is missing, an alarm is late or false,
-// or the memory grows.
+// stands still, the sensor goes dead or sends nothing. Ends with 1 where an event is missing, an alarm is late or
+// false, or the memory grows.
 //   live_soak [hours 24]
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -26,8 +26,8 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "app/monitor/test_processes.hpp"
@@ -36,8 +36,8 @@
 namespace {
 
 namespace fs = std::filesystem;
-using robomill::Random;
 using nlohmann::json;
+using robomill::Random;
 
 constexpr int rate_hz = 5120;
 constexpr double turning_rpm = 3000.0, standing_rpm = 0.05, chatter_hz = 683.0;
@@ -57,7 +57,8 @@ Second second_of(Random& random, double rpm, double chatter, bool grows) {
   for (int i = 0; i < rate_hz; ++i) {
     const double t = static_cast<double>(i) / rate_hz;
     double x = 0.3 * random.normal();
-    for (int k = 1; k <= 6 && rpm > standing_rpm; ++k) x += 4.0 / k * std::sin(2.0 * std::numbers::pi * 50.0 * k * t + k);
+    for (int k = 1; k <= 6 && rpm > standing_rpm; ++k)
+      x += 4.0 / k * std::sin(2.0 * std::numbers::pi * 50.0 * k * t + k);
     const double size = grows ? std::min(chatter, 0.02 * std::exp(t / 0.05)) : chatter;
     x += size * std::sin(2.0 * std::numbers::pi * chatter_hz * t);
     out += fmt::format("{:.4f},{}\n", x, rpm);
@@ -224,8 +225,8 @@ int main(int argc, char** argv) {
   const fs::path pipe = folder / "samples", events = folder / "events.jsonl";
   if (::mkfifo(pipe.c_str(), 0600) != 0) return 1;
   robomill::test::Process monitor(
-      {"env", "LD_PRELOAD=" ROBOMILL_SOAK_CLOCK, ROBOMILL_PROGRAM, "monitor", (folder / "monitor.toml").string(), "--input",
-       pipe.string(), "--format", "csv", "-o", events.string()},
+      {"env", "LD_PRELOAD=" ROBOMILL_SOAK_CLOCK, ROBOMILL_PROGRAM, "monitor", (folder / "monitor.toml").string(),
+       "--input", pipe.string(), "--format", "csv", "-o", events.string()},
       folder / "out.txt", folder / "err.txt");
   const int to = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC);
   write_whole(to, header);
@@ -264,10 +265,11 @@ int main(int argc, char** argv) {
   ::close(to);
   const int exit = monitor.wait();
   const Found found = found_in(events);
-  fmt::print("{} lines of events, {} recordings ({} failed), broker killed {} times ({} times lost as the events say), disk "
-             "full {} times (not saved {}, saved again {})\n",
-             found.lines, found.recordings, found.recordings_failed, broker_faults, found.connections_lost, disk_faults,
-             found.not_saved, found.saved);
+  fmt::print(
+      "{} lines of events, {} recordings ({} failed), broker killed {} times ({} times lost as the events say), disk "
+      "full {} times (not saved {}, saved again {})\n",
+      found.lines, found.recordings, found.recordings_failed, broker_faults, found.connections_lost, disk_faults,
+      found.not_saved, found.saved);
   bool good = demand(exit == 0, fmt::format("exit code {}", exit));
   good &= demand(found.broken == 0 && found.started == 1 && found.back_in_time == 0 && found.lost == 0,
                  fmt::format("{} broken lines, {} \"started\", {} back in time, {} of lost events", found.broken,
@@ -275,14 +277,16 @@ int main(int argc, char** argv) {
   good &= demand(found.lines - 1 == lines_of(folder / "out.txt"),
                  fmt::format("events saved and shown: {} and {}", found.lines - 1, lines_of(folder / "out.txt")));
   good &= demand(found.alarms == cycles && found.longest_delay_s <= longest_delay_s,
-                 fmt::format("{} alarms of {} cuts that chatter, {:.3f} s after they begin at most", found.alarms, cycles,
-                             found.longest_delay_s));
+                 fmt::format("{} alarms of {} cuts that chatter, {:.3f} s after they begin at most", found.alarms,
+                             cycles, found.longest_delay_s));
   good &= demand(found.false_alarms == 0, fmt::format("{} false alarms", found.false_alarms));
   good &= demand(found.standstills == cycles && found.no_signals >= 2 * cycles,
                  fmt::format("blind: {} times standstill, {} times no signal", found.standstills, found.no_signals));
   good &= demand(most_kib - after_tenth_kib < most_growth_kib,
                  fmt::format("resident memory {:.0f} KiB after a tenth, {:.0f} at most", after_tenth_kib, most_kib));
-  if (good) fs::remove_all(folder);
-  else fmt::print("left in {}\n", folder.string());
+  if (good)
+    fs::remove_all(folder);
+  else
+    fmt::print("left in {}\n", folder.string());
   return good ? 0 : 1;
 }

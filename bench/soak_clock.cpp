@@ -28,7 +28,8 @@ extern "C" __attribute__((visibility("default"))) int clock_gettime(clockid_t cl
   if (result != 0) return result;
   if (clock == CLOCK_MONOTONIC) {
     // Its derivative is 1 + slew * cos: the clock still runs forward.
-    const double in_period_s = static_cast<double>(time->tv_sec % slew_period_s) + 1e-9 * static_cast<double>(time->tv_nsec);
+    const double in_period_s =
+        static_cast<double>(time->tv_sec % slew_period_s) + 1e-9 * static_cast<double>(time->tv_nsec);
     const double omega_per_s = 2.0 * std::numbers::pi / static_cast<double>(slew_period_s);
     add(*time, slew / omega_per_s * std::sin(omega_per_s * in_period_s));
   } else if (clock == CLOCK_REALTIME) {

@@ -128,7 +128,7 @@ TEST_F(MonitorVerb, AlarmsAfterAStandstill) {
   const std::vector<json> states = events_of("state");
   EXPECT_EQ(states[0]["state"], "blind");
   EXPECT_EQ(states[0]["reason"], "standstill");
-  EXPECT_NE(run.out.find("cannot tell: standstill, for 0.5 s"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("cannot tell: standstill, for 0.475 s"), std::string::npos) << run.out;
 }
 
 /// A port at which connections are taken and nothing is ever said.

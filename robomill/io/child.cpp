@@ -27,7 +27,7 @@ std::uint64_t address_space_bytes() {
 }
 
 [[noreturn]] void be_child(int to, rlim_t most_address_space, const std::function<std::string()>& body,
-                           const std::filesystem::path& readable) {
+                           int more_files) {
   int status = 1;
   // Whatever ends the parent ends the child; the parent's handlers would remove the parent's files.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
@@ -45,10 +45,8 @@ std::uint64_t address_space_bytes() {
       ::dup2(nowhere, STDERR_FILENO);
       ::close(nowhere);
     }
-    FileRights rights = {.connects = false};
-    if (!readable.empty()) rights.readable.push_back(readable);
-    static_cast<void>(restrict_files(rights));
-    restrict_to_one_more_file();  // so that without Landlock too the file that is read leads to no other
+    static_cast<void>(restrict_files({.connects = false}));
+    restrict_to_more_files(more_files);
     if (write_all(to, body()) == 0) status = 0;
   } catch (...) {
     status = 1;
@@ -70,13 +68,13 @@ std::string read_whole(int from) {
 }  // namespace
 
 std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std::function<std::string()>& body,
-                                        const std::filesystem::path& readable) {
+                                        int more_files) {
   // Here, since a program whose files are restricted may look at its own state, and not at its child's.
   const std::uint64_t now = address_space_bytes();
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], now > 0 ? now + more_memory_bytes : 0, body, readable);
+  if (child == 0) be_child(ends[1], now > 0 ? now + more_memory_bytes : 0, body, more_files);
   ::close(ends[1]);
   std::string bytes = child > 0 ? read_whole(ends[0]) : std::string();
   ::close(ends[0]);

@@ -32,9 +32,6 @@ std::mutex& library() {
   return mutex;
 }
 
-/// zlib packs at most some thousand to one: a variable that claims more is a broken one, and must not be allocated.
-constexpr double most_packed = 1100.0;
-
 /// Beyond what is in use already and what the file's size asks for [bytes].
 constexpr std::size_t most_memory = std::size_t{64} << 20;
 
@@ -115,16 +112,12 @@ Eigen::MatrixXd matrix(matio_classes type, const void* data, Eigen::Index rows, 
 }
 
 /// Whether a variable is a matrix of numbers; one that claims more than its file can hold is rejected.
-bool is_matrix(const matvar_t& variable, const std::string& file, double file_bytes) {
+bool is_matrix(const matvar_t& variable, const std::string& file, std::size_t file_bytes) {
   const std::size_t width = bytes_of(variable.class_type);
   if (width == 0 || variable.name == nullptr || variable.rank != 2 || variable.isLogical != 0) return false;
-  const double bytes = static_cast<double>(variable.dims[0]) * static_cast<double>(variable.dims[1]) *
-                       static_cast<double>(width) * (variable.isComplex != 0 ? 2.0 : 1.0);
-  if (bytes > most_packed * file_bytes) {
-    throw InvalidInput(file, fmt::format("variable {} says that it holds {} x {} values, more than the file can",
-                                         variable.name, variable.dims[0], variable.dims[1]));
-  }
-  return bytes > 0.0;
+  require_held(file, variable.name, variable.dims[0], variable.dims[1], variable.isComplex != 0 ? 2 * width : width,
+               file_bytes);
+  return variable.dims[0] > 0 && variable.dims[1] > 0;
 }
 
 MatVariable converted(const matvar_t& variable, const std::string& file) {
@@ -144,8 +137,8 @@ MatVariable converted(const matvar_t& variable, const std::string& file) {
   return out;
 }
 
-std::vector<MatVariable> read_variables(const std::filesystem::path& path, double file_bytes) {
-  const std::string file = path.string();
+/// Of version 4 or 5.
+std::vector<MatVariable> read_variables(const std::string& file, std::size_t file_bytes) {
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (!mat) throw InvalidInput(file, "is no MAT file");
   std::vector<MatVariable> out;
@@ -211,10 +204,11 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
     throw InvalidInput(path.string(), fmt::format("ends within its variable {}", layout->variables + 1),
                        "Was it cut off while it was written or copied?");
   }
-  // What the libraries cannot read they take for zeros: they get it from memory, into which all of it was read.
-  const Descriptor memory(::memfd_create("robomill", MFD_CLOEXEC));
-  const std::filesystem::path place = fmt::format("/proc/self/fd/{}", memory.get());
-  if (write_all(memory.get(), content) != 0) {
+  const bool of_hdf5 = is_hdf5(content);
+  // What matio cannot read it takes for zeros: it gets the file from memory, into which all of it was read.
+  const Descriptor memory(of_hdf5 ? -1 : ::memfd_create("robomill", MFD_CLOEXEC));
+  const std::string place = fmt::format("/proc/self/fd/{}", memory.get());
+  if (!of_hdf5 && write_all(memory.get(), content) != 0) {
     throw InvalidInput(path.string(), "cannot be read", "Is there enough memory?");
   }
   const std::lock_guard lock(library());
@@ -222,13 +216,12 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
   // for gigabytes.
   const auto read = [&]() -> std::string {
     try {
-      if (is_hdf5(content)) require_self_contained_hdf5(place);
-      return answered + pack(read_variables(place, static_cast<double>(file_bytes)));
+      return answered + pack(of_hdf5 ? read_hdf5_matrices(content, place) : read_variables(place, file_bytes));
     } catch (const InvalidInput& error) {
       return rejected + error.parts().rule;
     }
   };
-  const auto packed = run_in_child(most_memory + 64 * file_bytes, read, path);
+  const auto packed = run_in_child(most_memory + 64 * file_bytes, read, of_hdf5 ? 0 : 1);
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
   if (packed->front() == rejected) throw InvalidInput(path.string(), packed->substr(1));
   return unpack(std::string_view(*packed).substr(1));

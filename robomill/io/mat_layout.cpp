@@ -1,7 +1,10 @@
 #include "robomill/io/mat_layout.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
-#include <cstdint>
+
+#include "robomill/base/error.hpp"
 
 namespace robomill::io {
 namespace {
@@ -75,6 +78,15 @@ std::optional<MatLayout> mat_layout(std::string_view bytes) {
     }
   }
   return level_4(bytes);
+}
+
+void require_held(const std::string& file, const std::string& variable, std::uint64_t rows, std::uint64_t columns,
+                  std::size_t value_bytes, std::size_t file_bytes) {
+  constexpr double most_packed = 1100.0;
+  const double bytes = static_cast<double>(rows) * static_cast<double>(columns) * static_cast<double>(value_bytes);
+  if (bytes <= most_packed * static_cast<double>(file_bytes)) return;
+  throw InvalidInput(file, fmt::format("variable {} says that it holds {} x {} values, more than the file can",
+                                       variable, rows, columns));
 }
 
 }  // namespace robomill::io

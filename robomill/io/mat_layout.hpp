@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace robomill::io {
@@ -14,5 +16,10 @@ struct MatLayout {
 /// None where the bytes are no MAT file of version 4 or 5, or one with lengths that make no sense.
 /// Source: [MathWorks2024] "MAT-File Format", level 5, "Data Elements"; level 4, "Header Format"
 [[nodiscard]] std::optional<MatLayout> mat_layout(std::string_view bytes);
+
+/// Before memory is asked for: zlib packs at most some thousand to one.
+/// @throws InvalidInput if a variable says that it holds more than its file can
+void require_held(const std::string& file, const std::string& variable, std::uint64_t rows, std::uint64_t columns,
+                  std::size_t value_bytes, std::size_t file_bytes);
 
 }  // namespace robomill::io

@@ -83,11 +83,11 @@ bool restrict_files(const FileRights& rights) {
   return restricted;
 }
 
-void restrict_to_one_more_file() {
+void restrict_to_more_files(int count) {
   const int next = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
   if (next < 0) return;
   ::close(next);
-  const auto most = static_cast<rlim_t>(next) + 1;
+  const auto most = static_cast<rlim_t>(next + count);
   const rlimit descriptors{most, most};
   ::setrlimit(RLIMIT_NOFILE, &descriptors);
 }

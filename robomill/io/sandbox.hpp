@@ -20,9 +20,8 @@ struct FileRights {
 /// False where the kernel has no Landlock: nothing has changed then.
 ROBOMILL_API bool restrict_files(const FileRights& rights);
 
-/// From here on this process has one descriptor more than it has now, and so one file more at a time. It needs nothing
-/// of the kernel.
-void restrict_to_one_more_file();
+/// From here on this process can open so many more descriptors than it has now. It needs nothing of the kernel.
+void restrict_to_more_files(int count);
 
 /// From here on this process may have so much memory of its own [bytes]; beyond it std::bad_alloc is thrown. Sanitized
 /// builds know no limit: their shadow memory is not told apart.

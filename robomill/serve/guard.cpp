@@ -77,7 +77,7 @@ bool Guard::has_access(const HttpRequest& request) const {
 }
 
 bool Guard::knows(const HttpRequest& request) const {
-  return is_own_host(request.header("host")) && has_access(request);
+  return is_own_host(request.header("host"), host_, port_) && has_access(request);
 }
 
 std::optional<std::string> Guard::cookie_for(const HttpRequest& request) const {
