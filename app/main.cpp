@@ -8,6 +8,7 @@
 #include <new>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "help.hpp"
@@ -64,7 +65,8 @@ struct CommandLine {
   CommandLine();
   /// Where the verb writes, in whatever option that stands.
   [[nodiscard]] std::vector<std::filesystem::path> outputs() const {
-    return {common.to_stdout() ? std::string() : common.output, common.report, couple.holder_out, couple.frfs};
+    return {common.to_stdout() ? std::string() : common.output, common.report, couple.holder_out, couple.frfs,
+            monitor.record};
   }
   void add_first_verbs();
   void add_structure_verbs();
@@ -367,15 +369,17 @@ int run_chosen(int argc, char** argv) {
     return report_error("interrupted", exit_of_signal());
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for this input", bad_input);
+  } catch (const std::system_error& error) {
+    errno = error.code().value();
+    return std::ferror(stdout) != 0 ? report_unwritten() : report_error(error.what(), bad_input);
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return report_unwritten();
     return report_error(error.what(), bad_input);
   }
 }
 
 /// Closes standard output, where a full disk behind a redirection shows at the latest.
 int end_with(int exit) {
-  const bool said = exit == bad_input;
+  const bool said = exit != done && exit != not_reached;
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return said ? exit : report_unwritten();
   // One that was closed before took nothing.

@@ -26,11 +26,12 @@ std::uint64_t address_space_bytes() {
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-[[noreturn]] void be_child(int to, rlim_t most_address_space, const std::function<std::string()>& body,
-                           int more_files) {
+[[noreturn]] void be_child(int to, rlim_t most_address_space, const std::function<std::string()>& body, int more_files,
+                           const sigset_t& unblocked) {
   int status = 1;
-  // Whatever ends the parent ends the child; the parent's handlers would remove the parent's files.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGPIPE}) ::signal(signal, SIG_DFL);
+  ::pthread_sigmask(SIG_SETMASK, &unblocked, nullptr);
+  // Whatever ends the parent ends the child.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     const rlimit no_core{0, 0};
@@ -54,13 +55,15 @@ std::uint64_t address_space_bytes() {
   ::_exit(status);
 }
 
-std::string read_whole(int from) {
+/// Nothing where it cannot be read to its end.
+std::optional<std::string> read_whole(int from) {
   std::string bytes;
   std::array<char, 1 << 16> block = {};
   while (true) {
     const ssize_t count = ::read(from, block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return bytes;
+    if (count < 0) return std::nullopt;
+    if (count == 0) return bytes;
     bytes.append(block.data(), static_cast<std::size_t>(count));
   }
 }
@@ -73,16 +76,23 @@ std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std
   const std::uint64_t now = address_space_bytes();
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  // Until the child has its own, the parent's handlers would remove the parent's files.
+  sigset_t every, before;
+  ::sigfillset(&every);
+  ::pthread_sigmask(SIG_BLOCK, &every, &before);
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], now > 0 ? now + more_memory_bytes : 0, body, more_files);
+  if (child == 0) be_child(ends[1], now > 0 ? now + more_memory_bytes : 0, body, more_files, before);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[1]);
-  std::string bytes = child > 0 ? read_whole(ends[0]) : std::string();
+  std::optional<std::string> bytes = child > 0 ? read_whole(ends[0]) : std::nullopt;
   ::close(ends[0]);
   if (child < 0) return std::nullopt;
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
+  pid_t ended = -1;
+  do {
+    ended = ::waitpid(child, &status, 0);
+  } while (ended < 0 && errno == EINTR);
+  if (ended != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
   return bytes;
 }
 

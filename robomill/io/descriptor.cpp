@@ -14,8 +14,6 @@
 namespace robomill::io {
 namespace {
 
-constexpr mode_t new_file = 0666;  // less what umask takes
-
 /// A call again as long as a signal interrupts it. @param call  returns -1 where it fails
 template <class Call>
 auto retried(const Call& call) noexcept {
@@ -62,8 +60,8 @@ int Descriptor::close() noexcept {
   return open < 0 || ::close(open) == 0 || errno == EINTR ? 0 : errno;
 }
 
-Descriptor open_descriptor(const char* path, int flags, int& error) noexcept {
-  const int open = retried([&] { return ::open(path, flags | O_CLOEXEC, new_file); });
+Descriptor open_descriptor(const char* path, int flags, int& error, unsigned mode) noexcept {
+  const int open = retried([&] { return ::open(path, flags | O_CLOEXEC, mode); });
   error = open < 0 ? errno : 0;
   return Descriptor(open);
 }

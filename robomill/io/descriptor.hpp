@@ -33,7 +33,8 @@ class Descriptor {
 };
 
 /// @param error  becomes 0 or errno
-[[nodiscard]] Descriptor open_descriptor(const char* path, int flags, int& error) noexcept;
+/// @param mode   of a file that is made, less the process's umask
+[[nodiscard]] Descriptor open_descriptor(const char* path, int flags, int& error, unsigned mode = 0666) noexcept;
 
 [[nodiscard]] int write_all(int to, std::string_view bytes) noexcept;
 /// @param count  becomes how many of them were written

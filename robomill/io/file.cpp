@@ -12,6 +12,7 @@
 #include <cstring>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
@@ -28,19 +29,14 @@ namespace fs = std::filesystem;
   throw InvalidInput(path.string(), std::move(rule), std::move(hint));
 }
 
-/// A link stays a link: what it points to is replaced, or taken away.
-fs::path behind_link(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_symlink(path, ignored)) return path;
-  const fs::path target = fs::weakly_canonical(path, ignored);
-  return ignored || target.empty() ? path : target;
-}
+constexpr unsigned owner_writes = 0600;
+constexpr int most_links = 40;  // as the kernel follows
 
-/// A device or a pipe cannot be renamed over; nothing of it remains half-written either.
-bool is_special(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+/// A name of a file by a descriptor that is open, /dev/stdout for one: renaming over it would take what it is open for.
+bool names_open_file(const fs::path& path) {
+  std::vector<fs::path> links = links_of(path);
+  links.pop_back();
+  return std::ranges::any_of(links, [](const fs::path& link) { return link.native().starts_with("/proc/"); });
 }
 
 /// A device or a pipe keeps who opens it waiting. On a command line that is wanted; a server names none.
@@ -49,6 +45,38 @@ void require_regular_if_confined(const fs::path& path) {
 }
 
 }  // namespace
+
+std::vector<fs::path> links_of(const fs::path& path) {
+  std::vector<fs::path> out = {path};
+  std::error_code error;
+  for (int links = 0; links < most_links && fs::is_symlink(out.back(), error); ++links) {
+    const fs::path target = fs::read_symlink(out.back(), error);
+    if (error) break;
+    out.push_back(out.back().parent_path() / target);
+  }
+  return out;
+}
+
+fs::path behind_link(const fs::path& path) {
+  return links_of(path).back();
+}
+
+bool is_special(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+fs::path temporary_name(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  fs::path name;
+  std::error_code ignored;
+  do {  // a killed process of the same number may have left one
+    name = path.parent_path() / fmt::format(".{}.{}-{}{}", path.stem().string(), ::getpid(), counter.fetch_add(1),
+                                            path.extension().string());
+  } while (fs::exists(fs::symlink_status(name, ignored)));
+  return name;
+}
 
 Format format_of(const fs::path& path) {
   static constexpr std::array<std::pair<std::string_view, Format>, 11> endings = {{{".uff", Format::uff},
@@ -123,8 +151,14 @@ void write_file(const fs::path& path, std::string_view content) {
 void make_folder(const fs::path& folder) {
   require_inside(folder);
   std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path each = folder; !each.empty() && !fs::exists(each, error); each = each.parent_path()) {
+    missing.push_back(each);
+    if (each == each.parent_path()) break;
+  }
   fs::create_directories(folder, error);
   if (error) reject(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
+  for (const fs::path& each : missing) require_success(each, synchronise_folder(each.parent_path()));
 }
 
 bool remove_file(const fs::path& path) {
@@ -138,20 +172,26 @@ bool remove_file(const fs::path& path) {
 
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   require_inside(path_);
-  static std::atomic<unsigned> counter{0};
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) reject(path_, "is a folder, not a file");
+  if (is_special(path_)) reject(path_, "is a device or a pipe, and this file is written to a place of its own");
+  if (names_open_file(path_)) {
+    reject(path_, "is a file that is open already", "Give the file's own name, or - for standard output");
+  }
   path_ = behind_link(path_);
+  require_inside(path_);
   const fs::path folder = path_.parent_path();
   if (path_.filename().empty() || (!folder.empty() && !fs::is_directory(folder, ignored))) {
     reject(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));
   }
+  // Nobody may read it who could not read the old one.
+  const fs::file_status old = fs::status(path_, ignored);
+  const auto mode = static_cast<unsigned>(fs::is_regular_file(old) ? old.permissions() : fs::perms{0666});
   int error = EEXIST;
-  while (error == EEXIST) {  // a killed process of the same number may have left one
-    temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
-                                      path_.extension().string());
+  while (error == EEXIST) {
+    temporary_ = temporary_name(path_);
     register_pending(temporary_);
-    file_ = open_descriptor(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL, error);
+    file_ = open_descriptor(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL, error, mode | owner_writes);
     if (error != 0) forget_pending(temporary_);
   }
   require_success(path_, error);
@@ -201,7 +241,7 @@ bool PendingFile::resize(std::uint64_t size) noexcept {
 }
 
 void PendingFile::prepare() {
-  if (!file_.is_open()) return;
+  if (!file_.is_open()) return require_written();
   std::error_code ignored;
   const fs::file_status old = fs::status(path_, ignored);
   // A file system without permissions keeps none.

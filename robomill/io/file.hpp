@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/io/descriptor.hpp"
@@ -19,11 +20,18 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 /// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav; case does not matter.
 [[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
 
+/// A path and, where it is a link, what it leads to, which may be missing, and so on.
+[[nodiscard]] std::vector<std::filesystem::path> links_of(const std::filesystem::path& path);
+/// The last of them: a link stays a link, and what it leads to is replaced.
+[[nodiscard]] std::filesystem::path behind_link(const std::filesystem::path& path);
+/// A device, a pipe or a socket, which cannot be renamed over; nothing of it remains half-written either.
+[[nodiscard]] bool is_special(const std::filesystem::path& path);
+/// A name that no file has beside another one.
+[[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path);
+
 /// A file opened to be read.
-/// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is an output (OutputPlaces) or of
-///     an unfinished FolderChange; or while a Confinement lives,
-/// if
-///     it is a device or a pipe
+/// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is an output (OutputPlaces), is of
+///     an unfinished FolderChange, or, while a Confinement lives, is a device or a pipe
 [[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
 
 /// The whole content of a file.
@@ -45,11 +53,12 @@ ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view
 ROBOMILL_API bool remove_file(const std::filesystem::path& path);
 
 /// A file that appears whole or not at all: it is written under a temporary name beside its place, made durable and
-/// renamed. It goes away unless committed. All that robomill writes, but for logs, is written here, what libraries
-/// write by their callbacks (write_at), so that no failure of the system is missed.
+/// renamed. It goes away unless committed. All that robomill writes into regular files, but for logs, is written here,
+/// what libraries write by their callbacks (write_at), so that no failure of the system is missed.
 class PendingFile {
  public:
-  /// @throws InvalidInput if the folder is missing, path is one, or it cannot be written
+  /// @throws InvalidInput if the folder is missing, path is one, a device, a pipe or an open file, or it cannot be
+  ///     written
   explicit PendingFile(std::filesystem::path path);
   ~PendingFile();
   PendingFile(const PendingFile&) = delete;

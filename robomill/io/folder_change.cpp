@@ -31,12 +31,16 @@ class Marker {
   /// @param flags  as open() takes them
   static std::optional<Marker> open(const fs::path& folder, int flags, int lock) {
     Marker out;
+    out.folder_ = folder;
     out.path_ = folder / marker_name;
     while (true) {
       int error = 0;
       // What is no file of ours, a pipe say, is not waited for.
       out.file_ = open_descriptor(out.path_.c_str(), flags | O_NOFOLLOW | O_NONBLOCK, error);
-      if (error == ENOENT && (flags & O_CREAT) == 0) return std::nullopt;
+      if ((flags & O_CREAT) == 0) {
+        if (error == ENOENT || error == ENOTDIR) return std::nullopt;
+        if (error != 0) throw InvalidInput(out.path_.string(), "cannot be read", std::strerror(error));
+      }
       require_success(out.path_, error);
       while (::flock(out.file_.get(), lock) != 0) {
         if (errno == EINTR) continue;
@@ -61,17 +65,17 @@ class Marker {
     int error = resize_file(file_.get(), 0);
     if (error == 0) error = write_all_at(file_.get(), text, 0);
     if (error == 0) error = synchronise(file_.get());
-    return error != 0 ? error : synchronise_folder(path_.parent_path());
+    return error != 0 ? error : synchronise_folder(folder_);
   }
   void write(std::string_view text) const { require_success(path_, put(text)); }
 
   [[nodiscard]] int remove() const noexcept {
     if (const int error = remove_name(path_); error != 0) return error;
-    return synchronise_folder(path_.parent_path());
+    return synchronise_folder(folder_);
   }
 
  private:
-  fs::path path_;
+  fs::path folder_, path_;
   Descriptor file_;
 };
 
@@ -94,18 +98,27 @@ std::vector<MarkerLine> lines_of(std::string_view text) {
 
 /// A file of the change.
 struct FolderChange::Place {
-  PendingFile* file = nullptr;                ///< null: it is removed
-  std::unique_ptr<PendingFile> removed = {};  ///< where it waits for that
-  bool done = false, exchanged = false;       ///< exchanged: the old file is where the new one was
+  std::string name;
+  PendingFile* file = nullptr;  ///< null: it is removed
+  fs::path path;                ///< where it stands, behind a link
+  fs::path old;                 ///< where the old file waits until all have their places; empty: there is none
+  bool moved = false;           ///< the old file is there
+  bool placed = false;          ///< the new one is in its place
 
-  [[nodiscard]] const PendingFile& pending() const { return file != nullptr ? *file : *removed; }
-  [[nodiscard]] std::string line() const {
-    return fmt::format("{}\t{}\n", pending().path().filename().string(), pending().temporary().filename().string());
+  /// Both names that it has in the meantime.
+  [[nodiscard]] std::string lines(const fs::path& folder) const {
+    std::string out;
+    for (const fs::path& temporary : {file != nullptr ? file->temporary() : fs::path(), old}) {
+      if (temporary.empty()) continue;
+      const bool beside = temporary.parent_path() == folder;
+      out += fmt::format("{}\t{}\n", name, beside ? temporary.filename().string() : fs::absolute(temporary).string());
+    }
+    return out;
   }
 };
 
 FolderChange::FolderChange(fs::path folder) : folder_(std::move(folder)) {
-  make_folder(folder_);
+  if (!folder_.empty()) make_folder(folder_);
 }
 
 FolderChange::~FolderChange() = default;
@@ -113,79 +126,97 @@ FolderChange::~FolderChange() = default;
 void FolderChange::write(const std::string& name, std::string_view content) {
   own_.push_back(std::make_unique<PendingFile>(folder_ / name));
   own_.back()->write(content);
-  add(*own_.back());
+  add(name, *own_.back());
 }
 
-void FolderChange::add(PendingFile& file) {
+void FolderChange::add(const std::string& name, PendingFile& file) {
   file.prepare();
-  Place place;
-  place.file = &file;
-  places_.push_back(std::move(place));
+  places_.push_back({.name = name, .file = &file, .path = file.path(), .old = {}});
 }
 
 void FolderChange::remove(const std::string& name) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(folder_ / name, ignored)) return;
-  Place place;
-  place.removed = std::make_unique<PendingFile>(folder_ / name);
-  place.removed->prepare();
-  places_.push_back(std::move(place));
+  places_.push_back({.name = name, .path = behind_link(folder_ / name), .old = {}});
 }
 
-/// A file that is removed waits where its temporary file was, so that it can come back.
-void FolderChange::take_place(Place& place) {
-  const fs::path &from = place.pending().temporary(), &to = place.pending().path();
-  int error = place.file != nullptr ? exchange_files(from, to) : rename_file(to, from);
-  place.exchanged = place.file != nullptr && error == 0;
-  const bool cannot_exchange = error == ENOENT || error == EINVAL || error == ENOSYS;
-  if (place.file != nullptr && cannot_exchange) error = rename_file(from, to);
-  require_success(to, error);
-  place.done = true;
-}
-
-/// What cannot be undone stays named in the marker.
-void FolderChange::undo() noexcept {
-  for (auto place = places_.rbegin(); place != places_.rend(); ++place) {
-    if (!place->done) continue;
-    const fs::path &temporary = place->pending().temporary(), &path = place->pending().path();
-    const int error = place->file == nullptr ? rename_file(temporary, path)
-                      : place->exchanged     ? exchange_files(temporary, path)
-                                             : rename_file(path, temporary);
-    place->done = error != 0;
+/// Of a file that stays regular: what is none of ours is not taken away.
+void FolderChange::make_room(const std::vector<std::string>& left_behind) {
+  // What a change that was ended has written, and this one does not write, is of no run.
+  for (const std::string& name : left_behind) {
+    if (std::ranges::find(places_, name, &Place::name) == places_.end()) remove(name);
   }
+  std::erase_if(places_, [](Place& place) {
+    std::error_code ignored;
+    if (fs::is_regular_file(place.path, ignored)) place.old = temporary_name(place.path);
+    return place.file == nullptr && place.old.empty();
+  });
+}
+
+void FolderChange::take_place(Place& place) {
+  if (!place.old.empty()) {
+    require_success(place.path, rename_file(place.path, place.old));
+    place.moved = true;
+  }
+  if (place.file == nullptr) return;
+  require_success(place.path, rename_file(place.file->temporary(), place.path));
+  place.placed = true;
+}
+
+/// What cannot be undone stays where it is, and named in the marker. Whether all was undone.
+bool FolderChange::undo() noexcept {
+  bool all = true;
+  for (auto place = places_.rbegin(); place != places_.rend(); ++place) {
+    const int error = place->moved    ? rename_file(place->old, place->path)
+                      : place->placed ? remove_name(place->path)
+                                      : 0;
+    if (error == 0) place->moved = place->placed = false;
+    all = all && error == 0;
+  }
+  return all;
+}
+
+void FolderChange::synchronise_folders() const {
+  std::vector<fs::path> folders = {folder_};
+  for (const Place& place : places_) {
+    if (std::ranges::find(folders, place.path.parent_path()) == folders.end())
+      folders.push_back(place.path.parent_path());
+  }
+  for (const fs::path& folder : folders) require_success(folder, synchronise_folder(folder));
 }
 
 void FolderChange::commit() {
   const std::optional<Marker> marker = Marker::open(folder_, O_RDWR | O_CREAT, LOCK_EX);
   const std::string left_behind = marker->text();
+  std::vector<std::string> left_names;
+  for (const MarkerLine& line : lines_of(left_behind)) left_names.emplace_back(line.name);
   try {
+    make_room(left_names);
     std::string text = left_behind;  // whose temporary files are still to be taken away
-    for (const Place& place : places_) text += place.line();
+    for (const Place& place : places_) text += place.lines(folder_);
     marker->write(text);
     for (Place& place : places_) take_place(place);
-    require_success(folder_, synchronise_folder(folder_));
+    synchronise_folders();
+    for (const MarkerLine& line : lines_of(left_behind)) static_cast<void>(remove_name(folder_ / line.temporary));
+    require_success(folder_, marker->remove());
   } catch (...) {
-    undo();
-    const bool undone = std::ranges::none_of(places_, &Place::done);
-    if (undone) static_cast<void>(left_behind.empty() ? marker->remove() : marker->put(left_behind));
+    if (undo()) static_cast<void>(left_behind.empty() ? marker->remove() : marker->put(left_behind));
     throw;
   }
-  for (Place& place : places_) {
-    if (place.file != nullptr) place.file->discard();
-    place.removed.reset();
+  for (const Place& place : places_) {
+    if (place.file != nullptr) place.file->discard();  // its name only: the file has moved
+    if (place.moved) static_cast<void>(remove_name(place.old));
   }
-  for (const MarkerLine& line : lines_of(left_behind)) static_cast<void>(remove_name(folder_ / line.temporary));
-  require_success(folder_, marker->remove());
 }
 
 void require_completed(const fs::path& path) {
-  const std::optional<Marker> marker = Marker::open(path.parent_path(), O_RDONLY, LOCK_SH);
-  if (!marker) return;
-  const std::string text = marker->text();
-  for (const MarkerLine& line : lines_of(text)) {
-    if (line.name != path.filename().native()) continue;
-    throw InvalidInput(path.string(), "belongs to files that were being replaced when the program was ended",
-                       "Some are of the last run and some of the one before. Run it again");
+  for (const fs::path& place : links_of(path)) {
+    const std::optional<Marker> marker = Marker::open(place.parent_path(), O_RDONLY, LOCK_SH);
+    if (!marker) continue;
+    const std::string text = marker->text();
+    for (const MarkerLine& line : lines_of(text)) {
+      if (line.name != place.filename().native()) continue;
+      throw InvalidInput(path.string(), "belongs to files that were being replaced when the program was ended",
+                         "Some are of the last run and some of the one before. Run it again");
+    }
   }
 }
 

@@ -14,7 +14,7 @@ namespace robomill::io {
 /// reading one of them is an error then, until another change of the folder has been completed.
 class FolderChange {
  public:
-  /// Makes the folder. @throws InvalidInput if it cannot be made
+  /// Makes the folder; empty: that in which the process works. @throws InvalidInput if it cannot be made
   explicit FolderChange(std::filesystem::path folder);
   ~FolderChange();
   FolderChange(const FolderChange&) = delete;
@@ -22,17 +22,19 @@ class FolderChange {
 
   /// A file of it. @throws InvalidInput if it cannot be written
   void write(const std::string& name, std::string_view content);
-  /// A file that somebody else has written; it lives until commit() has returned.
-  void add(PendingFile& file);
-  /// A file that goes, where it is there.
+  /// A file of that name which somebody else has written; it lives until commit() has returned.
+  void add(const std::string& name, PendingFile& file);
+  /// A regular file that goes, where it is there.
   void remove(const std::string& name);
   /// @throws InvalidInput if that fails
   void commit();
 
  private:
   struct Place;
+  void make_room(const std::vector<std::string>& left_behind);
   void take_place(Place& place);
-  void undo() noexcept;
+  void synchronise_folders() const;
+  bool undo() noexcept;
 
   std::filesystem::path folder_;
   std::vector<std::unique_ptr<PendingFile>> own_;

@@ -28,7 +28,7 @@ TEST(FolderChange, ReplacesAddsAndRemovesTogether) {
   {
     FolderChange second(out);
     second.write("a.json", "2");
-    second.add(other);
+    second.add("c.csv", other);
     second.remove("b.json");
     second.remove("none.json");
     EXPECT_EQ(read_file(out / "a.json"), "1");
@@ -53,7 +53,7 @@ TEST(FolderChange, ThatFailsHasChangedNothing) {
       change.remove("gone");
       for (PendingFile* file : files) {
         file->write("new");
-        change.add(*file);
+        change.add(file->path().filename().string(), *file);
       }
       fs::remove(files[failing]->temporary());
       EXPECT_NE(rejection([&] { change.commit(); }).find("cannot be written"), std::string::npos);
@@ -85,6 +85,42 @@ TEST(FolderChange, ThatWasKilledIsReportedUntilAnotherIsCompleted) {
   EXPECT_EQ(read_file(a), "newer");
   EXPECT_EQ(read_file(b), "newer");
   EXPECT_EQ(folder.count(), 3u);
+}
+
+// What the run that was killed wrote and this one does not write is of no run.
+TEST(FolderChange, TakesAwayWhatOneThatWasKilledLeft) {
+  const Folder folder;
+  static_cast<void>(folder.file("blocks.csv", "new"));
+  static_cast<void>(folder.file("other.csv", "mine"));
+  static_cast<void>(folder.file(".robomill-unfinished", "blocks.csv\t.blocks.12-0.csv\n"));
+  FolderChange again(folder.path());
+  again.write("a.json", "1");
+  again.commit();
+  EXPECT_FALSE(fs::exists(folder.at("blocks.csv")));
+  EXPECT_EQ(read_file(folder.at("a.json")), "1");
+  EXPECT_EQ(folder.count(), 2u);
+}
+
+// A document that is a link stays one, and what it leads to is marked by both its names.
+TEST(FolderChange, GoesBehindLinks) {
+  const Folder folder;
+  fs::create_directories(folder.at("out"));
+  fs::create_directories(folder.at("shared"));
+  fs::create_symlink("../shared/m.json", folder.at("out/modes.json"));
+  for (const char* content : {"1", "2"}) {  // the first time it leads to nothing
+    FolderChange change(folder.at("out"));
+    change.write("modes.json", content);
+    change.commit();
+    EXPECT_TRUE(fs::is_symlink(folder.at("out/modes.json")));
+    EXPECT_EQ(read_file(folder.at("shared/m.json")), content);
+  }
+  static_cast<void>(folder.file("out/.robomill-unfinished", "modes.json\t.m.12-0.json\n"));
+  fs::create_symlink("out/modes.json", folder.at("link.json"));
+  for (const char* name : {"out/modes.json", "link.json"}) {
+    EXPECT_NE(rejection([&] { static_cast<void>(read_file(folder.at(name))); }).find("were being replaced"),
+              std::string::npos)
+        << name;
+  }
 }
 
 }  // namespace folder_change_test

@@ -149,10 +149,10 @@ std::optional<MatVariable> variable_of(hid_t file, const std::string& name, std:
   }
   const auto [columns, rows] = sizes;
   require_held(file_name, name, rows, columns, H5Tget_size(type.get()), file_bytes);
-  const auto matrix = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-  MatVariable out{.name = name, .re = matrix};
+  MatVariable out{.name = name, .re = {}};
+  out.re.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
   const bool is_complex = numbers == Numbers::complex;
-  if (is_complex) out.im = matrix;
+  if (is_complex) out.im.resizeLike(out.re);
   if (!read_values(set.get(), is_complex ? "real" : nullptr, out.re) ||
       (is_complex && !read_values(set.get(), "imag", out.im))) {
     throw InvalidInput(file_name, fmt::format("variable {} cannot be read", name));

@@ -5,11 +5,13 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -138,12 +140,17 @@ MatVariable converted(const matvar_t& variable, const std::string& file) {
 }
 
 /// Of version 4 or 5.
-std::vector<MatVariable> read_variables(const std::string& file, std::size_t file_bytes) {
+/// @param count  of variables of any kind in the file; 0: not known
+std::vector<MatVariable> read_variables(const std::string& file, std::size_t file_bytes, std::size_t count) {
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (!mat) throw InvalidInput(file, "is no MAT file");
   std::vector<MatVariable> out;
-  while (true) {
+  for (std::size_t i = 0;; ++i) {
     const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
+    if (!variable && i < count) {
+      throw InvalidInput(file, fmt::format("variable {} cannot be read, nor what follows it", i + 1),
+                         "Is the file damaged, or does it hold objects? Save the numbers alone");
+    }
     if (!variable) break;
     if (!is_matrix(*variable, file, file_bytes)) continue;
     if (Mat_VarReadDataAll(mat.get(), variable.get()) != 0) {
@@ -175,13 +182,19 @@ std::string pack(const std::vector<MatVariable>& variables) {
 
 std::vector<MatVariable> unpack(std::string_view bytes) {
   std::vector<MatVariable> out;
+  // A damaged file may have made the child say anything.
   const auto take = [&bytes](void* to, std::size_t count) {
+    if (count > bytes.size()) throw std::length_error("less than it says");
     if (count > 0) std::memcpy(to, bytes.data(), count);
     bytes.remove_prefix(count);
   };
   while (!bytes.empty()) {
     std::array<Eigen::Index, 4> sizes{};
     take(sizes.data(), sizeof(sizes));
+    const auto held = static_cast<Eigen::Index>(bytes.size());
+    const bool makes_sense =
+        std::ranges::all_of(sizes, [held](Eigen::Index size) { return size >= 0 && size <= held; });
+    if (!makes_sense || (sizes[1] > 0 && sizes[2] > held / sizes[1])) throw std::length_error("more than it has");
     MatVariable variable{.name = std::string(static_cast<std::size_t>(sizes[0]), ' '), .re = {}};
     take(variable.name.data(), variable.name.size());
     variable.re.resize(sizes[1], sizes[2]);
@@ -216,15 +229,23 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
   // for gigabytes.
   const auto read = [&]() -> std::string {
     try {
-      return answered + pack(of_hdf5 ? read_hdf5_matrices(content, place) : read_variables(place, file_bytes));
+      return answered + pack(of_hdf5 ? read_hdf5_matrices(content, place)
+                                     : read_variables(place, file_bytes, layout ? layout->variables : 0));
     } catch (const InvalidInput& error) {
-      return rejected + error.parts().rule;
+      return rejected + error.parts().rule + '\n' + error.parts().hint;
     }
   };
   const auto packed = run_in_child(most_memory + 64 * file_bytes, read, of_hdf5 ? 0 : 1);
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
-  if (packed->front() == rejected) throw InvalidInput(path.string(), packed->substr(1));
-  return unpack(std::string_view(*packed).substr(1));
+  if (packed->front() == rejected) {
+    const std::size_t hint = packed->find('\n');
+    throw InvalidInput(path.string(), packed->substr(1, hint - 1), packed->substr(hint + 1));
+  }
+  try {
+    return unpack(std::string_view(*packed).substr(1));
+  } catch (const std::length_error&) {
+    throw InvalidInput(path.string(), "is a damaged MAT file");
+  }
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {

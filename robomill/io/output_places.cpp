@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/pending_names.hpp"
 
 namespace robomill::io {
@@ -18,7 +19,7 @@ thread_local OutputPlaces* innermost = nullptr;
 /// Where a path leads, behind every link, as far as it is there.
 fs::path real(const fs::path& path) {
   std::error_code error;
-  const fs::path found = fs::weakly_canonical(fs::absolute(path, error), error);
+  const fs::path found = fs::weakly_canonical(fs::absolute(behind_link(path), error), error);
   return error ? path : found;
 }
 
@@ -34,17 +35,11 @@ bool stands_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
-bool is_regular_or_new(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return !fs::exists(status) || fs::is_regular_file(status) || fs::is_directory(status);
-}
-
 }  // namespace
 
 OutputPlaces::OutputPlaces(std::vector<fs::path> places) : places_(std::move(places)), outer_(innermost) {
   // A device takes what is written and is not replaced.
-  std::erase_if(places_, [](const fs::path& place) { return place.empty() || !is_regular_or_new(place); });
+  std::erase_if(places_, [](const fs::path& place) { return place.empty() || is_special(place); });
   for (std::size_t i = 0; i < places_.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (is_same(places_[i], places_[k])) {

@@ -80,7 +80,7 @@ std::string note_of(const std::filesystem::path& path, const WavLength& length) 
     throw InvalidInput(path.string(), fmt::format("states no samples, and {} bytes of them follow", length.bytes),
                        "Its recorder was not stopped: the lengths in its header must be set");
   }
-  if (length.bytes + 1 >= length.stated_bytes) return {};  // one: a byte that fills up the last chunk
+  if (length.bytes >= length.stated_bytes) return {};
   const double rate = static_cast<double>(length.bytes_per_s);
   const auto text = [rate](std::uint64_t bytes) {
     const auto count = static_cast<double>(bytes);

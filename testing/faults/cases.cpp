@@ -217,7 +217,7 @@ constexpr const char* example_forces = "init forces --example --quiet";
 
 std::vector<Case> all_cases() {
   return {
-      {"init", "job", "init job --example --quiet", "", is_new},
+      {"init", "job", "init job --example --quiet", "", is_new | together},
       {"init", "standard output", "init lobes --example -o - --quiet", "", to_stdout},
       {"frf", "uff", "frf hits.toml -o tip.uff", hits},
       {"frf", "binary uff", "frf hits.toml --binary -o tip.uff", hits},

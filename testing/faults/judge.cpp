@@ -178,8 +178,9 @@ void Judge::look_at_files(Judgement& judgement) const {
     }
   }
   judgement.complete = all_new;
-  const bool hidden = std::ranges::any_of(now, [&](const auto& file) { return is_hidden(file.first); });
-  if (case_.is(together) && !all_new && !all_old && !(died && hidden)) add(judgement, Finding::mixed, "");
+  const bool marked =
+      std::ranges::any_of(now, [](const auto& file) { return file.first.ends_with(".robomill-unfinished"); });
+  if (case_.is(together) && !all_new && !all_old && !(died && marked)) add(judgement, Finding::mixed, "");
   for (const auto& [name, content] : now) {
     if (after_.contains(name) || before_.contains(name) || (died && is_hidden(name))) continue;
     add(judgement, Finding::leftover, name);

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/folder_change.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
@@ -269,7 +270,10 @@ void require_new(const InitFiles& files) {
 
 void write_init(const InitFiles& files) {
   require_new(files);
-  for (std::size_t i = files.files.size(); i-- > 0;) io::write_file(files.files[i].path, files.files[i].text);
+  if (files.files.size() == 1) return io::write_file(files.files.front().path, files.files.front().text);
+  io::FolderChange all(files.files.front().path.parent_path());
+  for (const NewFile& file : files.files) all.write(file.path.filename().string(), file.text);
+  all.commit();
 }
 
 }  // namespace robomill::jobs

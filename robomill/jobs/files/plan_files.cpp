@@ -27,7 +27,7 @@ class PlanFolder {
     const std::string name = path.output.filename().string();
     names_.push_back(name);
     if (path.trajectory) {
-      change_.add(path.trajectory->finish());
+      change_.add(name, path.trajectory->finish());
     } else if (path.stale) {
       change_.remove(name);
     }

@@ -49,15 +49,7 @@ void SampleFile::commit() {
   finish().commit();
 }
 
-void require_regular(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InvalidInput(path.string(), "must be a regular file", "A trajectory appears whole, by renaming");
-  }
-}
-
-PendingText::PendingText(const std::filesystem::path& path) : pending_((require_regular(path), path)) {}
+PendingText::PendingText(const std::filesystem::path& path) : pending_(path) {}
 
 void PendingText::restart() {
   buffer_.clear();

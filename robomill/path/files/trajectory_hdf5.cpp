@@ -24,8 +24,7 @@ struct Column {
 
 class Hdf5 final : public SampleFile {
  public:
-  Hdf5(const std::filesystem::path& path, const TrajectoryInfo& info)
-      : path_(path), info_(info), pending_((require_regular(path), path)) {
+  Hdf5(const std::filesystem::path& path, const TrajectoryInfo& info) : path_(path), info_(info), pending_(path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are reported as ours
     begin();
   }

@@ -33,9 +33,6 @@ class PendingText {
   fmt::memory_buffer buffer_;
 };
 
-/// @throws InvalidInput if the place holds something that is no regular file: a device or a pipe cannot appear whole
-void require_regular(const std::filesystem::path& path);
-
 [[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_csv(const std::filesystem::path& path,
                                                               const TrajectoryInfo& info);
 [[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_hdf5(const std::filesystem::path& path,
