@@ -382,8 +382,8 @@ int end_with(int exit) {
   const bool said = exit != done && exit != not_reached;
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return said ? exit : report_unwritten();
-  // One that was closed before took nothing.
-  return std::fclose(stdout) == 0 || errno == EBADF || said ? exit : report_unwritten();
+  // One that was closed before took nothing; all was flushed where a signal interrupts closing.
+  return std::fclose(stdout) == 0 || errno == EBADF || errno == EINTR || said ? exit : report_unwritten();
 }
 
 }  // namespace
