@@ -1,5 +1,6 @@
 // What a verb writes, as a user meets it: no input is replaced, nothing that cannot be written passes in silence.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -26,7 +27,8 @@ class Outputs : public ProgramTest {
     write("slots.csv", "feed_per_tooth_mm,fx_n,fy_n,fz_n\n0.05,1,2,1\n0.1,2,3,1\n");
     write("loads.csv", "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n");
     write("recordings.toml", "[signal]\n");
-    write("cut.csv", "time_s,ax\n0,1\n0.001,2\n");
+    write("cut.csv", "time_s,ax_m_per_s2\n0,1\n0.001,2\n");
+    fs::create_symlink(".", folder_.at("here"));
     fs::create_symlink("example_hit_x.csv", folder_.at("soft.csv"));
     fs::create_hard_link(folder_.at("example_hit_x.csv"), folder_.at("hard.csv"));
   }
@@ -58,7 +60,11 @@ TEST_F(Outputs, ReplaceNoInput) {
                {"smooth part.csv --cell cell.toml -o part.csv", "part.csv"},
                {"monitor monitor.toml --input cut.csv -o cut.csv", "cut.csv"},
                {"calibrate recordings.toml -o recordings.toml", "recordings.toml"},
-               {"plan job.toml -o .", "job.toml"}};
+               {"couple assembly.toml -o tip2.uff --holder-out assembly.toml", "assembly.toml"},
+               {"couple assembly.toml --tools part.csv --frfs . -o tools.csv", "part.csv"},
+               {"monitor monitor.toml --input cut.csv --record .", "cut.csv"},
+               {"plan job.toml -o .", "job.toml"},
+               {"plan job.toml -o here", "job.toml"}};
   for (const auto& one : tries) {
     const std::string before = slurp(folder_.at(one.input));
     ASSERT_FALSE(before.empty()) << one.input;
@@ -90,6 +96,28 @@ TEST_F(Outputs, ToADeviceThatTakesNothingEndWithAnError) {
     EXPECT_EQ(run.err, "robomill: standard output cannot be written: No space left on device\n") << command;
   }
   EXPECT_EQ(robomill("lobes lobes.toml --quiet >/dev/full").exit, 0) << "nothing was to be written";
+}
+
+// What is no file that could appear whole.
+TEST_F(Outputs, KeepPipesLinksAndOpenFiles) {
+  ASSERT_EQ(::mkfifo(folder_.at("pipe.mat").c_str(), 0600), 0);
+  const Ended into_pipe = robomill("frf hits.toml -o pipe.mat");
+  EXPECT_EQ(into_pipe.exit, 1);
+  EXPECT_NE(into_pipe.err.find("pipe.mat: is a device or a pipe"), std::string::npos) << into_pipe.err;
+  EXPECT_TRUE(fs::is_fifo(folder_.at("pipe.mat")));
+  // A link to what is to be made stays one.
+  fs::create_symlink("made.json", folder_.at("link.json"));
+  EXPECT_EQ(robomill("lobes lobes.toml -o link.json").exit, 0);
+  EXPECT_TRUE(fs::is_symlink(folder_.at("link.json")));
+  EXPECT_TRUE(fs::is_regular_file(folder_.at("made.json")));
+  fs::create_symlink("two.json", folder_.at("one.json"));
+  EXPECT_NE(robomill("lobes lobes.toml -o one.json --report two.json").err.find("two outputs"), std::string::npos);
+  // What a shell has opened is not replaced below it.
+  write("all.json", "kept\n");
+  const Ended open = robomill("monitor monitor.toml --input cut.csv --quiet -o /dev/stdout >>all.json");
+  EXPECT_EQ(open.exit, 1);
+  EXPECT_NE(open.err.find("/dev/stdout: is a file that is open already"), std::string::npos) << open.err;
+  EXPECT_EQ(slurp(folder_.at("all.json")), "kept\n");
 }
 
 // A disk that is full for one verb after another.

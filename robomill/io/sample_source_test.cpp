@@ -192,6 +192,10 @@ TEST(SampleSource, SaysThatARecordingWasCutOff) {
   ASSERT_EQ(source->notes().size(), 1U);
   EXPECT_NE(source->notes().front().find("holds 0.5 s of the 1 s that its header states"), std::string::npos);
   EXPECT_EQ(all(*source).size(), 2000U);
+  for (std::size_t bytes = 1; bytes <= 4; ++bytes) {  // of the last frame
+    const auto short_one = folder.file("cut.wav", std::string_view(whole).substr(0, whole.size() - bytes));
+    EXPECT_EQ(open_samples(short_one, named({"1"}))->notes().size(), 1U) << bytes;
+  }
 }
 
 TEST(SampleSource, ReadsMat) {
