@@ -117,10 +117,10 @@ int rename_file(const std::filesystem::path& from, const std::filesystem::path& 
   return retried([&] { return ::rename(from.c_str(), to.c_str()); }) == 0 ? 0 : errno;
 }
 
-int exchange_files(const std::filesystem::path& one, const std::filesystem::path& other) noexcept {
-  return retried([&] { return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE); }) == 0
-             ? 0
-             : errno;
+int keep_file(const std::filesystem::path& file, const std::filesystem::path& name) noexcept {
+  if (::link(file.c_str(), name.c_str()) == 0) return 0;
+  const bool has_one_name = errno == EPERM || errno == ENOTSUP || errno == ENOSYS || errno == EMLINK;
+  return has_one_name ? rename_file(file, name) : errno;
 }
 
 int remove_name(const std::filesystem::path& path) noexcept {

@@ -51,8 +51,8 @@ class Descriptor {
 [[nodiscard]] int synchronise_folder(const std::filesystem::path& folder) noexcept;
 
 [[nodiscard]] int rename_file(const std::filesystem::path& from, const std::filesystem::path& to) noexcept;
-/// Two files change places, at once. EINVAL or ENOSYS where the file system cannot.
-[[nodiscard]] int exchange_files(const std::filesystem::path& one, const std::filesystem::path& other) noexcept;
+/// Gives a file a second name. Where the file system knows one name a file, it moves.
+[[nodiscard]] int keep_file(const std::filesystem::path& file, const std::filesystem::path& name) noexcept;
 
 /// A file that is not there is removed.
 [[nodiscard]] int remove_name(const std::filesystem::path& path) noexcept;

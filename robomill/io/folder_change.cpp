@@ -71,7 +71,8 @@ class Marker {
 
   [[nodiscard]] int remove() const noexcept {
     if (const int error = remove_name(path_); error != 0) return error;
-    return synchronise_folder(folder_);
+    static_cast<void>(synchronise_folder(folder_));  // at worst it is back after a loss of power
+    return 0;
   }
 
  private:
@@ -102,7 +103,7 @@ struct FolderChange::Place {
   PendingFile* file = nullptr;  ///< null: it is removed
   fs::path path;                ///< where it stands, behind a link
   fs::path old;                 ///< where the old file waits until all have their places; empty: there is none
-  bool moved = false;           ///< the old file is there
+  bool kept = false;            ///< the old file is there
   bool placed = false;          ///< the new one is in its place
 
   /// Both names that it has in the meantime.
@@ -153,8 +154,9 @@ void FolderChange::make_room(const std::vector<std::string>& left_behind) {
 
 void FolderChange::take_place(Place& place) {
   if (!place.old.empty()) {
-    require_success(place.path, rename_file(place.path, place.old));
-    place.moved = true;
+    const int error = place.file != nullptr ? keep_file(place.path, place.old) : rename_file(place.path, place.old);
+    require_success(place.path, error);
+    place.kept = true;
   }
   if (place.file == nullptr) return;
   require_success(place.path, rename_file(place.file->temporary(), place.path));
@@ -165,10 +167,9 @@ void FolderChange::take_place(Place& place) {
 bool FolderChange::undo() noexcept {
   bool all = true;
   for (auto place = places_.rbegin(); place != places_.rend(); ++place) {
-    const int error = place->moved    ? rename_file(place->old, place->path)
-                      : place->placed ? remove_name(place->path)
-                                      : 0;
-    if (error == 0) place->moved = place->placed = false;
+    int error = place->kept ? rename_file(place->old, place->path) : place->placed ? remove_name(place->path) : 0;
+    if (error == 0 && place->kept) error = remove_name(place->old);  // two names of one file both stay
+    if (error == 0) place->kept = place->placed = false;
     all = all && error == 0;
   }
   return all;
@@ -203,21 +204,26 @@ void FolderChange::commit() {
   }
   for (const Place& place : places_) {
     if (place.file != nullptr) place.file->discard();  // its name only: the file has moved
-    if (place.moved) static_cast<void>(remove_name(place.old));
+    if (place.kept) static_cast<void>(remove_name(place.old));
   }
 }
 
-void require_completed(const fs::path& path) {
+bool is_unfinished(const fs::path& path) {
   for (const fs::path& place : links_of(path)) {
     const std::optional<Marker> marker = Marker::open(place.parent_path(), O_RDONLY, LOCK_SH);
     if (!marker) continue;
     const std::string text = marker->text();
     for (const MarkerLine& line : lines_of(text)) {
-      if (line.name != place.filename().native()) continue;
-      throw InvalidInput(path.string(), "belongs to files that were being replaced when the program was ended",
-                         "Some are of the last run and some of the one before. Run it again");
+      if (line.name == place.filename().native()) return true;
     }
   }
+  return false;
+}
+
+void require_completed(const fs::path& path) {
+  if (!is_unfinished(path)) return;
+  throw InvalidInput(path.string(), "belongs to files that were being replaced when the program was ended",
+                     "Some are of the last run and some of the one before. Run it again");
 }
 
 }  // namespace robomill::io

@@ -41,8 +41,9 @@ class FolderChange {
   std::vector<Place> places_;
 };
 
-/// Before a file is read. Waits for a change that is being made. @throws InvalidInput if it belongs to a change of its
-/// folder that was not completed
+/// Whether a file belongs to a change of its folder that was not completed. Waits for one that is being made.
+[[nodiscard]] bool is_unfinished(const std::filesystem::path& path);
+/// Before a file is read. @throws InvalidInput if it is unfinished
 void require_completed(const std::filesystem::path& path);
 
 }  // namespace robomill::io

@@ -14,15 +14,16 @@ enum class Kind : unsigned char {
   interrupted,  ///< EINTR, once
   short_write,  ///< half of the bytes are written
   disk_full,    ///< ENOSPC, from there on
+  disk_lost,    ///< EIO of all that changes something, from there on
   killed,       ///< SIGKILL before the call; a write has written half
   no_memory     ///< an allocation fails, once
 };
-constexpr std::size_t kind_count = 7;
-constexpr std::array<const char*, kind_count> kind_names = {"ENOSPC",    "EIO",     "EINTR",    "short write",
-                                                            "full disk", "kill -9", "no memory"};
+constexpr std::size_t kind_count = 8;
+constexpr std::array<const char*, kind_count> kind_names = {"ENOSPC",    "EIO",       "EINTR",   "short write",
+                                                            "full disk", "lost disk", "kill -9", "no memory"};
 constexpr std::array<Kind, kind_count> all_kinds = {Kind::no_space,    Kind::io_error,  Kind::interrupted,
-                                                    Kind::short_write, Kind::disk_full, Kind::killed,
-                                                    Kind::no_memory};
+                                                    Kind::short_write, Kind::disk_full, Kind::disk_lost,
+                                                    Kind::killed,      Kind::no_memory};
 
 /// What was called. Opening to read and opening to write differ, since a full disk can still be read. Only what was
 /// opened to write is closed with consequences.
@@ -53,6 +54,7 @@ constexpr bool applies(Kind kind, Call call) {
       return allocates;
     case Kind::io_error:
       return !allocates;
+    case Kind::disk_lost:
     case Kind::killed:
     case Kind::no_space:
       return !allocates && !only_reads;

@@ -121,13 +121,15 @@ Verdict next(Call call, const char* file) noexcept {
     const std::uint64_t now = report->calls[static_cast<std::size_t>(each)].fetch_add(1) + 1;
     if (each == kind) number = now;
   }
-  if (nth == 0 || number == 0 || (kind == Kind::disk_full ? number < nth : number != nth)) return {};
+  const bool lasts = kind == Kind::disk_full || kind == Kind::disk_lost;
+  if (nth == 0 || number == 0 || (lasts ? number < nth : number != nth)) return {};
   if (report->reached.fetch_add(1) == 0) {
     report->call = static_cast<unsigned char>(call);
     std::strncpy(report->file.data(), file, report->file.size() - 1);
   }
   switch (kind) {
     case Kind::io_error:
+    case Kind::disk_lost:
       return {.error = EIO};
     case Kind::interrupted:
       return {.error = EINTR};

@@ -262,7 +262,7 @@ InitFiles init_files(const InitOptions& options) {
 
 void require_new(const InitFiles& files) {
   for (const NewFile& file : files.files) {
-    if (is_there(file.path)) {
+    if (is_there(file.path) && !io::is_unfinished(file.path)) {
       throw InvalidInput(file.path.string(), "exists, and is not overwritten", "Name another file by -o, or move it");
     }
   }
