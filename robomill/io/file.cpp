@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <regex>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -76,6 +77,12 @@ fs::path temporary_name(const fs::path& path) {
                                             path.extension().string());
   } while (fs::exists(fs::symlink_status(name, ignored)));
   return name;
+}
+
+bool is_temporary_name(const fs::path& path) {
+  // .STEM.PROCESS-NUMBER, and perhaps an extension
+  static const std::regex form(R"(\..+\.\d+-\d+(\.[^.]*)?)");
+  return std::regex_match(path.filename().string(), form);
 }
 
 Format format_of(const fs::path& path) {

@@ -28,6 +28,8 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 [[nodiscard]] bool is_special(const std::filesystem::path& path);
 /// A name that no file has beside another one.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path);
+/// Whether it looks like one.
+[[nodiscard]] bool is_temporary_name(const std::filesystem::path& path);
 
 /// A file opened to be read.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is an output (OutputPlaces), is of

@@ -53,6 +53,10 @@ class Marker {
     }
   }
 
+  [[nodiscard]] bool is_empty() const noexcept {
+    struct stat status = {};
+    return ::fstat(file_.get(), &status) == 0 && status.st_size == 0;
+  }
   [[nodiscard]] std::string text() const {
     std::string out(most_marker_bytes, '\0');
     std::size_t count = 0;
@@ -90,7 +94,11 @@ std::vector<MarkerLine> lines_of(std::string_view text) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     const std::size_t tab = line.find('\t');
-    if (tab != std::string_view::npos) out.push_back({line.substr(0, tab), line.substr(tab + 1)});
+    if (tab == std::string_view::npos) continue;
+    const MarkerLine found{line.substr(0, tab), line.substr(tab + 1)};
+    // Whatever else somebody wrote into a marker, no other file is taken away for it.
+    if (fs::path(found.name).has_parent_path() || !is_temporary_name(found.temporary)) continue;
+    out.push_back(found);
   }
   return out;
 }
@@ -139,12 +147,13 @@ void FolderChange::remove(const std::string& name) {
   places_.push_back({.name = name, .path = behind_link(folder_ / name), .old = {}});
 }
 
-/// Of a file that stays regular: what is none of ours is not taken away.
-void FolderChange::make_room(const std::vector<std::string>& left_behind) {
-  // What a change that was ended has written, and this one does not write, is of no run.
-  for (const std::string& name : left_behind) {
-    if (std::ranges::find(places_, name, &Place::name) == places_.end()) remove(name);
-  }
+/// What a change that was ended has written, and this one does not write, is of no run.
+void FolderChange::remove_stray(std::string_view name) {
+  if (std::ranges::find(places_, name, &Place::name) == places_.end()) remove(std::string(name));
+}
+
+/// Regular files alone: what is none of ours is not taken away.
+void FolderChange::find_old() {
   std::erase_if(places_, [](Place& place) {
     std::error_code ignored;
     if (fs::is_regular_file(place.path, ignored)) place.old = temporary_name(place.path);
@@ -186,20 +195,24 @@ void FolderChange::synchronise_folders() const {
 
 void FolderChange::commit() {
   const std::optional<Marker> marker = Marker::open(folder_, O_RDWR | O_CREAT, LOCK_EX);
-  const std::string left_behind = marker->text();
-  std::vector<std::string> left_names;
-  for (const MarkerLine& line : lines_of(left_behind)) left_names.emplace_back(line.name);
+  const bool is_new = marker->is_empty();
+  std::optional<std::string> left_behind;  // by a change that was ended
   try {
-    make_room(left_names);
-    std::string text = left_behind;  // whose temporary files are still to be taken away
+    left_behind = marker->text();
+    const std::vector<MarkerLine> left = lines_of(*left_behind);
+    for (const MarkerLine& line : left) remove_stray(line.name);
+    find_old();
+    std::string text = *left_behind;  // whose temporary files are still to be taken away
     for (const Place& place : places_) text += place.lines(folder_);
     marker->write(text);
     for (Place& place : places_) take_place(place);
     synchronise_folders();
-    for (const MarkerLine& line : lines_of(left_behind)) static_cast<void>(remove_name(folder_ / line.temporary));
+    for (const MarkerLine& line : left) static_cast<void>(remove_name(folder_ / line.temporary));
     require_success(folder_, marker->remove());
   } catch (...) {
-    if (undo()) static_cast<void>(left_behind.empty() ? marker->remove() : marker->put(left_behind));
+    const bool undone = undo();
+    if (undone && is_new) static_cast<void>(marker->remove());
+    if (undone && !is_new && left_behind) static_cast<void>(marker->put(*left_behind));
     throw;
   }
   for (const Place& place : places_) {

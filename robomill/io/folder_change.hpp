@@ -31,7 +31,8 @@ class FolderChange {
 
  private:
   struct Place;
-  void make_room(const std::vector<std::string>& left_behind);
+  void remove_stray(std::string_view name);
+  void find_old();
   void take_place(Place& place);
   void synchronise_folders() const;
   bool undo() noexcept;

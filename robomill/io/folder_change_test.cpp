@@ -101,6 +101,22 @@ TEST(FolderChange, TakesAwayWhatOneThatWasKilledLeft) {
   EXPECT_EQ(folder.count(), 2u);
 }
 
+// Who may write into a folder must not have others take away what he could not.
+TEST(FolderChange, TakesNothingElseAwayForAMarker) {
+  const Folder folder;
+  fs::create_directories(folder.at("out"));
+  static_cast<void>(folder.file("mine.txt", "1"));
+  static_cast<void>(folder.file(".profile", "1"));
+  static_cast<void>(folder.file("out/.robomill-unfinished",
+                                "../mine.txt\t.a.1-1.json\na.json\t../mine.txt\nb.json\t../.profile\nc.json\n\t\n"));
+  FolderChange again(folder.at("out"));
+  again.write("a.json", "1");
+  again.commit();
+  EXPECT_EQ(read_file(folder.at("mine.txt")), "1");
+  EXPECT_EQ(read_file(folder.at(".profile")), "1");
+  EXPECT_EQ(read_file(folder.at("out/a.json")), "1");
+}
+
 // A document that is a link stays one, and what it leads to is marked by both its names.
 TEST(FolderChange, GoesBehindLinks) {
   const Folder folder;

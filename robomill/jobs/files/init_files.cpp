@@ -29,10 +29,10 @@ constexpr std::size_t most_records = 200;
 constexpr std::size_t most_notes = 10;
 constexpr std::uintmax_t largest_record_bytes = std::uintmax_t{256} << 20;
 
-/// A link too, whatever it points to.
+/// A link too, whatever it points to; but not what an earlier call, which was ended, has begun.
 bool is_there(const fs::path& path) {
   std::error_code ignored;
-  return fs::symlink_status(path, ignored).type() > fs::file_type::not_found;
+  return fs::symlink_status(path, ignored).type() > fs::file_type::not_found && !io::is_unfinished(path);
 }
 
 /// Numbers in names count as numbers: hit_2 before hit_10.
@@ -262,7 +262,7 @@ InitFiles init_files(const InitOptions& options) {
 
 void require_new(const InitFiles& files) {
   for (const NewFile& file : files.files) {
-    if (is_there(file.path) && !io::is_unfinished(file.path)) {
+    if (is_there(file.path)) {
       throw InvalidInput(file.path.string(), "exists, and is not overwritten", "Name another file by -o, or move it");
     }
   }

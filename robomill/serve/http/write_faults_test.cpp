@@ -1,6 +1,6 @@
 // Every write of the server to a client fails once: nobody else is kept waiting, and no connection stays. The calls of
-// the C library are replaced in this program; those of the test's own thread work. A write of a part alone is not tried:
-// Asio then waits until there is room again, which there always was.
+// the C library are replaced in this program; those of the test's own thread work. A write of a part alone is not
+// tried: Asio then waits until there is room again, which there always was.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
@@ -22,9 +22,9 @@ namespace robomill::serve {
 namespace http_write_faults_test {
 
 struct Fault {
-  std::thread::id client = {};    ///< whose calls do not count
-  std::atomic<int> calls{0};      ///< that count
-  std::atomic<int> failing{0};    ///< the number of the one that fails; 0: none
+  std::thread::id client = {};  ///< whose calls do not count
+  std::atomic<int> calls{0};    ///< that count
+  std::atomic<int> failing{0};  ///< the number of the one that fails; 0: none
   std::atomic<int> error{0};
 };
 Fault fault;
