@@ -346,6 +346,7 @@ JobRequest read_job_request(const io::Json& body, const ResolvePath& resolve) {
 }
 
 JobOutcome run_verb(const JobRequest& request, const fs::path& root, Progress& progress) {
+  require_folder(root);
   const VerbJob job(request, root);
   const auto in_root = [&root](const std::string& path) { return root / path; };
   const Verb& verb = verb_of(request.verb);
