@@ -15,6 +15,7 @@
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
+#include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/files/named_files.hpp"
 #include "robomill/serve/verb_options.hpp"
 #include "robomill/serve/verb_runs.hpp"
