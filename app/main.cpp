@@ -323,8 +323,11 @@ void CommandLine::add_machine_verbs() {
       ->check(whole_number(0, 65535));
   sub->add_option(
       "--host", options.host,
-      "address to listen at, or localhost (default: 127.0.0.1); one that other machines reach needs --token");
-  sub->add_option("--token", options.token, "that whoever asks must know: 16 or more letters and digits");
+      "address to listen at, or localhost (default: 127.0.0.1); one that other machines reach needs a token");
+  CLI::Option* const token = sub->add_option(
+      "--token", options.token,
+      "that whoever asks must know: 16 or more letters and digits; other users of this machine see it in ps");
+  sub->add_option("--token-file", serve.token_file, "a file that has the token alone")->excludes(token);
   sub->add_option("--job-memory-mb", serve.job_memory_mb, "that a job may have (default: half the machine's)")
       ->check(whole_number(100, 100'000'000));
 }

@@ -136,7 +136,8 @@ struct PlanCommand {
 };
 struct ServeCommand {
   serve::ServeOptions options;
-  int job_memory_mb = 0;  ///< 0: half the machine's
+  int job_memory_mb = 0;             ///< 0: half the machine's
+  std::filesystem::path token_file;  ///< options.token stands in it; empty: in no file
 };
 /// What this program is asked for where it is to work for a server that it is too (ServeOptions::worker).
 inline constexpr std::string_view serve_worker = "serve-worker";

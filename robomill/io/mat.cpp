@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -36,6 +37,9 @@ std::mutex& library() {
 
 /// Beyond what is in use already and what the file's size asks for [bytes].
 constexpr std::size_t most_memory = std::size_t{64} << 20;
+
+/// To read a file in; a second more a megabyte.
+constexpr std::chrono::seconds shortest_time(30);
 
 /// Version 7.3 is an HDF5 file behind a header of version 5; without that header it is one too.
 bool is_hdf5(std::string_view content) {
@@ -235,7 +239,11 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
       return rejected + error.parts().rule + '\n' + error.parts().hint;
     }
   };
-  const auto packed = run_in_child(most_memory + 64 * file_bytes, read, of_hdf5 ? 0 : 1);
+  const ChildLimits limits = {.more_memory_bytes = most_memory + 64 * file_bytes,
+                              .time = shortest_time + std::chrono::milliseconds(file_bytes / 1000),
+                              .lent = memory.get(),
+                              .more_files = of_hdf5 ? 0 : 1};
+  const auto packed = run_in_child(limits, read);
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
   if (packed->front() == rejected) {
     const std::size_t hint = packed->find('\n');
@@ -246,6 +254,18 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
   } catch (const std::length_error&) {
     throw InvalidInput(path.string(), "is a damaged MAT file");
   }
+}
+
+bool mat_seems_to_have(const std::filesystem::path& path, const std::string& name, std::size_t longest_bytes) {
+  std::string content;
+  try {
+    content = read_file(path, longest_bytes);
+  } catch (const InvalidInput&) {
+    return false;
+  }
+  if (is_hdf5(content)) return content.find(name) != std::string::npos;
+  const std::vector<std::string> names = mat_names(content);
+  return std::ranges::find(names, name) != names.end();
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace robomill::io {
 
@@ -16,6 +17,10 @@ struct MatLayout {
 /// None where the bytes are no MAT file of version 4 or 5, or one with lengths that make no sense.
 /// Source: [MathWorks2024] "MAT-File Format", level 5, "Data Elements"; level 4, "Header Format"
 [[nodiscard]] std::optional<MatLayout> mat_layout(std::string_view bytes);
+
+/// The names of the variables of a MAT file of version 4 or 5, out of the first bytes of each, by no library that reads
+/// MAT files: of the first thousand, as far as they make sense.
+[[nodiscard]] std::vector<std::string> mat_names(std::string_view bytes);
 
 /// Before memory is asked for: zlib packs at most some thousand to one.
 /// @throws InvalidInput if a variable says that it holds more than its file can

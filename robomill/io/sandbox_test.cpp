@@ -5,10 +5,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <linux/seccomp.h>
 #include <matio.h>
 #include <netinet/in.h>
+#include <signal.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,6 +31,7 @@
 #include "robomill/io/descriptor.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/mat.hpp"
+#include "robomill/io/sanitized.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {
@@ -87,7 +93,12 @@ TEST(RestrictFiles, LeavesWhatIsNamed) {
 TEST(RestrictFiles, TakesTheNetworkWhereTheKernelCan) {
   bool here = false, there = false;
   const auto connect = [](bool& allowed) {
+    errno = 0;
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (socket < 0) {  // denied already
+      allowed = errno != EACCES;
+      return;
+    }
     sockaddr_in address = {};
     address.sin_family = AF_INET;
     address.sin_port = htons(1);  // nobody listens there
@@ -104,10 +115,73 @@ TEST(RestrictFiles, TakesTheNetworkWhereTheKernelCan) {
   if (there) GTEST_SKIP() << "this kernel's Landlock knows no network";
 }
 
+TEST(RestrictFiles, LeavesNoWayToOtherProgramsWhereNothingConnects) {
+  if (sanitized) GTEST_SKIP() << "sanitized builds look into programs";
+  const Folder folder;
+  // Somebody who listens at a path, as an agent of keys does.
+  const std::string path = folder.at("agent.sock");
+  sockaddr_un address = {};
+  address.sun_family = AF_UNIX;
+  ASSERT_LT(path.size(), sizeof(address.sun_path));
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  const Descriptor listens(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_EQ(::bind(listens.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(::listen(listens.get(), 4), 0);
+  const Descriptor early(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const auto connects = [&](int socket) {
+    return ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  };
+  const auto opens_socket = [](int domain, int type) {
+    const Descriptor socket(::socket(domain, type | SOCK_CLOEXEC, 0));
+    return socket.get() >= 0;
+  };
+  const Descriptor reachable(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_TRUE(connects(reachable.get()));
+  ASSERT_TRUE(opens_socket(AF_INET, SOCK_DGRAM));
+  bool filtered = false;
+  found_by_restricted({.connects = false}, [&] {
+    filtered = ::prctl(PR_GET_SECCOMP, 0, 0, 0, 0) == SECCOMP_MODE_FILTER;
+    if (!filtered) return;
+    EXPECT_FALSE(connects(early.get()));
+    EXPECT_FALSE(opens_socket(AF_UNIX, SOCK_STREAM));
+    EXPECT_FALSE(opens_socket(AF_INET, SOCK_DGRAM));
+    EXPECT_NE(::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr), 0);
+    std::array<int, 2> ends = {-1, -1};
+    EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);  // all else goes on
+    for (const int one : ends) ::close(one);
+  });
+  if (!filtered) GTEST_SKIP() << "this kernel has no seccomp, or no Landlock";
+}
+
+TEST(RestrictFiles, SignalsItsOwnProgramsAlone) {
+  const pid_t beside = ::fork();
+  if (beside == 0) {
+    for (;;) ::pause();
+  }
+  // In a process of its own, which has one below it.
+  const pid_t restricted = ::fork();
+  if (restricted == 0) {
+    if (!restrict_files({})) ::_exit(2);
+    const pid_t below = ::fork();
+    if (below == 0) {
+      for (;;) ::pause();
+    }
+    const bool ends_below = ::kill(below, SIGKILL) == 0;
+    ::waitpid(below, nullptr, 0);
+    ::_exit(!ends_below ? 1 : ::kill(beside, 0) == 0 ? 3 : 0);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(restricted, &status, 0), restricted);
+  ::kill(beside, SIGKILL);
+  ::waitpid(beside, nullptr, 0);
+  if (WEXITSTATUS(status) >= 2) GTEST_SKIP() << "this kernel has no Landlock, or one that knows no signals";
+  EXPECT_EQ(status, 0);
+}
+
 TEST(Child, OpensNoFile) {
   const Folder folder;
   const fs::path one = folder.file("one.txt", "1"), other = folder.file("other.txt", "2");
-  constexpr std::size_t memory = std::size_t{1} << 26;
+  ChildLimits memory = {.more_memory_bytes = std::size_t{1} << 26};
   const auto both = [&]() -> std::string {
     const int first = ::open(one.c_str(), O_RDONLY | O_CLOEXEC);
     const int second = ::open(other.c_str(), O_RDONLY | O_CLOEXEC);
@@ -115,13 +189,16 @@ TEST(Child, OpensNoFile) {
   };
   EXPECT_EQ(run_in_child(memory, both), "none");
   const bool known = found_by_restricted({.readable = {folder.path()}}, [] {});
-  EXPECT_EQ(run_in_child(memory, both, 1), known ? "none" : "one");
+  memory.more_files = 1;
+  EXPECT_EQ(run_in_child(memory, both), known ? "none" : "one");
   // What is in memory is lent.
   const Descriptor lent(::memfd_create("lent", MFD_CLOEXEC));
   const auto in_memory = [&]() -> std::string {
     return opens(fmt::format("/proc/self/fd/{}", lent.get())) ? "open" : "closed";
   };
-  EXPECT_EQ(run_in_child(memory, in_memory, 1), "open");
+  memory.lent = lent.get();
+  EXPECT_EQ(run_in_child(memory, in_memory), "open");
+  memory.more_files = 0;
   EXPECT_EQ(run_in_child(memory, in_memory), "closed");
 }
 
@@ -201,7 +278,7 @@ class Leading : public ::testing::Test {
   /// Whether HDF5 leads out of the child that reads MAT files, where nothing was checked before.
   [[nodiscard]] bool leads_out_of_child() const {
     std::string content = read_file(folder_.at("a.mat"));
-    const auto said = run_in_child(std::size_t{1} << 26, [&]() -> std::string {
+    const auto said = run_in_child({.more_memory_bytes = std::size_t{1} << 26}, [&]() -> std::string {
       const hid_t access = H5Pcreate(H5P_CLS_FILE_ACCESS_ID_g);
       H5Pset_fapl_core(access, 1 << 16, 0);
       H5Pset_file_image(access, content.data(), content.size());

@@ -77,6 +77,12 @@ bool fits(const Route& route, std::string_view path) {
                                    : path == route.path;
 }
 
+/// Whether what is asked reads or writes files, or lists them. What runs can be looked at and ended without its folder.
+bool is_of_folder(const HttpRequest& request) {
+  if (request.method == "GET") return request.path == "/api/state" || request.path == "/api/file";
+  return request.method != "DELETE" && request.path != "/api/edit";
+}
+
 io::Json file_object(const FolderFile& file) {
   const auto time = std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(file.modified));
   return {{"path", file.path},
@@ -122,6 +128,7 @@ struct Api::Parts {
   ~Parts() {
     if (live) live->end();
     if (reader) reader->end();
+    if (monitor_service) monitor_service->end();
   }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -134,6 +141,8 @@ struct Api::Parts {
   [[nodiscard]] HttpResponse start_job(const io::Json& body);
   [[nodiscard]] HttpResponse about_job(const HttpRequest& request);
   [[nodiscard]] HttpResponse answer(const HttpRequest& request);
+  [[nodiscard]] HttpResponse answer_monitors(const HttpRequest& request);
+  [[nodiscard]] Worker& worker_of(const HttpRequest& request);
   void answer_latest(const ClientOrder& order, std::function<std::string(Progress&)> compute, const Reply& reply);
   [[nodiscard]] HttpResponse answer_live(const HttpRequest& request, const Reply& reply);
   void watch(const std::stop_token& stop);
@@ -144,19 +153,20 @@ struct Api::Parts {
   std::unique_ptr<WorkerProcess> live;    ///< lobes; null: in this process
   std::unique_ptr<WorkerProcess> reader;  ///< of files that a request names; null: in this process
   JobRunner jobs;
-  TapTests taps;                                    ///< of the worker alone
-  MonitorSessions monitors;                         ///< of the worker alone
+  TapTests taps;                                    ///< of tap_worker alone
+  MonitorSessions monitors;                         ///< of monitor_worker alone
   std::unique_ptr<MonitorService> monitor_service;  ///< in place of them; null: in this process
   LiveLobes lobes;                                  ///< of latest's thread alone
   Latest latest;
-  Worker files{64};
+  // Each waits for another process or device, and no other for it. The first asks nobody: state and cancelled jobs are
+  // answered whatever hangs.
+  Worker at_hand{64}, reader_worker{64}, monitor_worker{64}, tap_worker{64};
   std::mutex waiting;
   std::condition_variable_any ended;
   std::jthread watcher{[this](const std::stop_token& stop) { watch(stop); }};
 };
 
 HttpResponse Api::Parts::state() {
-  folder.require_there();
   io::Json list = io::Json::array();
   std::size_t left_out = 0;
   {
@@ -190,7 +200,6 @@ HttpResponse Api::Parts::get_file(const HttpRequest& request) const {
 HttpResponse Api::Parts::put_file(const HttpRequest& request) {
   const auto named = request.query.find("path");
   if (named == request.query.end()) return error_response(400, "path is missing");
-  folder.require_there();  // it would be made anew
   const std::filesystem::path path = folder.resolve(named->second);
   std::error_code ignored;
   const bool there = std::filesystem::exists(path, ignored);
@@ -227,7 +236,6 @@ HttpResponse Api::Parts::edit(const io::Json& body) {
 }
 
 HttpResponse Api::Parts::start_job(const io::Json& body) {
-  folder.require_there();
   const std::optional<int> id =
       jobs.submit(read_job_request(body, [this](const std::string& path) { return folder.resolve(path); }));
   if (!id) return error_response(429, "too many jobs wait; try later");
@@ -252,17 +260,27 @@ HttpResponse Api::Parts::about_job(const HttpRequest& request) {
   return {.body = std::move(report)};
 }
 
+HttpResponse Api::Parts::answer_monitors(const HttpRequest& request) {
+  return monitor_service ? monitor_service->answer(request) : monitors.answer(request);
+}
+
+Worker& Api::Parts::worker_of(const HttpRequest& request) {
+  const std::string& path = request.path;
+  if (path.starts_with("/api/monitors")) return monitor_worker;
+  if (path.starts_with("/api/tap")) return tap_worker;
+  return path == "/api/check" || path == "/api/inspect" ? reader_worker : at_hand;
+}
+
 HttpResponse Api::Parts::answer(const HttpRequest& request) {
   const std::string& path = request.path;
+  if (is_of_folder(request)) require_folder(folder.root());
   if (path == "/api/state") return state();
   if (path == "/api/file") return request.method == "GET" ? get_file(request) : put_file(request);
   if (path == "/api/verbs") return json_response(verbs_json());
   if (path.starts_with("/api/jobs/")) return about_job(request);
   if (path == "/api/jobs" && request.method == "GET") return json_response(jobs.list());
   if (path.starts_with("/api/tap")) return taps.answer(request);
-  if (path.starts_with("/api/monitors")) {
-    return monitor_service ? monitor_service->answer(request) : monitors.answer(request);
-  }
+  if (path.starts_with("/api/monitors")) return answer_monitors(request);
   if (path == "/api/check" || path == "/api/inspect") return read_file_of(request);
   const io::Json body = io::parse_json(request.body, "request");
   if (path == "/api/jobs") return start_job(body);
@@ -292,6 +310,7 @@ void Api::Parts::answer_latest(const ClientOrder& order, std::function<std::stri
 /// Status 0: it replies by itself, later.
 HttpResponse Api::Parts::answer_live(const HttpRequest& request, const Reply& reply) {
   if (request.path == "/api/lobes") {
+    require_folder(folder.root());
     LiveLobesRequest asked = read_live_lobes_request(request.body);
     asked.file = folder.resolve(asked.file.string());
     answer_latest(
@@ -356,10 +375,11 @@ void Api::handle(HttpRequest request, const Reply& reply) {
     if (at_once.status != 0) reply(at_once);
     return;
   }
+  Worker& worker = parts_->worker_of(request);
   auto work = [this, request = std::move(request), reply] {
     reply(answer_of(parts_->folder.root(), [&] { return parts_->answer(request); }));
   };
-  if (!parts_->files.post(std::move(work))) reply(error_response(503, "too many requests wait; try later"));
+  if (!worker.post(std::move(work))) reply(error_response(503, "too many requests wait; try later"));
 }
 
 }  // namespace robomill::serve

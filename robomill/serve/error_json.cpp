@@ -1,6 +1,8 @@
 #include "robomill/serve/error_json.hpp"
 
+#include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <new>
 #include <string>
 #include <utility>
@@ -9,9 +11,23 @@
 #include "robomill/base/progress.hpp"
 
 namespace robomill::serve {
+namespace {
+
+/// Whether a name goes on at a place: what stands before it is not all of it.
+bool goes_on(const std::string& text, std::size_t at) {
+  const auto is_of_name = [&text](std::size_t place) {
+    if (place >= text.size()) return false;
+    const auto letter = static_cast<unsigned char>(text[place]);
+    return std::isalnum(letter) != 0 || letter == '_' || letter == '-' || letter >= 0x80;
+  };
+  return is_of_name(at) || (at < text.size() && text[at] == '.' && is_of_name(at + 1));
+}
+
+}  // namespace
+
 std::string without_root(std::string text, const std::filesystem::path& root) {
   if (root == root.root_path()) return text;  // all paths are below it, and "//" is in no path
-  const std::string way = root.string() + "/";
+  const std::string way = root.string();
   std::size_t at = text.find(way);
   if (at == std::string::npos) return text;
   std::string out;  // built once: erased in place, a long text with many paths would be moved for each
@@ -19,6 +35,11 @@ std::string without_root(std::string text, const std::filesystem::path& root) {
   for (; at != std::string::npos; at = text.find(way, done)) {
     out.append(text, done, at - done);
     done = at + way.size();
+    if (done < text.size() && text[done] == '/') {
+      ++done;  // what follows is below it
+    } else {
+      out += goes_on(text, done) ? way : root.filename().string();
+    }
   }
   return out.append(text, done, std::string::npos);
 }

@@ -17,7 +17,7 @@ namespace robomill::serve {
 /// Of a text alone: all other keys are null.
 [[nodiscard]] io::Json error_object(const std::string& text);
 
-/// A text whose paths below root are relative to it.
+/// A text whose paths below root are relative to it; of root itself it has the name alone.
 [[nodiscard]] std::string without_root(std::string text, const std::filesystem::path& root);
 /// A message as a client may see it: without the way to root, printable.
 [[nodiscard]] std::string client_text(std::string text, const std::filesystem::path& root);

@@ -77,7 +77,9 @@ bool Guard::has_access(const HttpRequest& request) const {
 }
 
 bool Guard::knows(const HttpRequest& request) const {
-  return is_own_host(request.header("host"), host_, port_) && has_access(request);
+  if (!is_own_host(request.header("host"), host_, port_)) return false;
+  if (!token_.empty()) return has_access(request);
+  return equal_secrets(request.header("x-robomill-token"), write_token_);
 }
 
 std::optional<std::string> Guard::cookie_for(const HttpRequest& request) const {

@@ -22,7 +22,8 @@ class Guard {
   /// The answer where the request is rejected: a foreign Host (a name that was made to point here), another origin, a
   /// write without the page's token, no or a wrong access token.
   [[nodiscard]] std::optional<HttpResponse> reject(const HttpRequest& request) const;
-  /// Whether a request comes from who may ask, whatever it asks.
+  /// Whether a request proves that it comes from who may ask, whatever it asks: by the access token, or where there is
+  /// none by the page's.
   [[nodiscard]] bool knows(const HttpRequest& request) const;
   /// The header that makes a browser remember the access token, where the page was asked for with it in its address.
   [[nodiscard]] std::optional<std::string> cookie_for(const HttpRequest& request) const;

@@ -15,6 +15,7 @@
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
+#include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/files/named_files.hpp"
 #include "robomill/serve/verb_options.hpp"
 #include "robomill/serve/verb_runs.hpp"
@@ -346,6 +347,7 @@ JobRequest read_job_request(const io::Json& body, const ResolvePath& resolve) {
 }
 
 JobOutcome run_verb(const JobRequest& request, const fs::path& root, Progress& progress) {
+  require_folder(root);
   const VerbJob job(request, root);
   const auto in_root = [&root](const std::string& path) { return root / path; };
   const Verb& verb = verb_of(request.verb);

@@ -166,6 +166,13 @@ TEST_F(Serve, SaysThatItsFolderIsGone) {
   // Nothing is made in its place.
   EXPECT_EQ(ask("PUT", "/api/file?path=new.csv", "1,2", {{"If-None-Match", "*"}}).status, 400);
   post("/api/jobs", {{"input", "job.toml"}, {"output", "out"}}, 400);
+  for (const char* path : {"/api/check", "/api/inspect", "/api/lobes", "/api/tap", "/api/tap/save", "/api/monitors"}) {
+    const HttpAnswer answer = ask("POST", path, "{}");
+    EXPECT_EQ(answer.status, 400) << path;
+    EXPECT_NE(answer.body.find("the folder that is served is gone"), std::string::npos) << path << answer.body;
+  }
+  EXPECT_NE(ask("GET", "/api/file?path=job.toml").body.find("is gone"), std::string::npos);
+  EXPECT_EQ(ask("GET", "/api/jobs").status, 200);
   EXPECT_FALSE(fs::exists(place_.at("served")));
 }
 

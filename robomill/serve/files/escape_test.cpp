@@ -1,9 +1,11 @@
 // No file leads out of the folder that is served: whatever it is a link to, and whatever it names.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -12,12 +14,16 @@
 #include "robomill/io/confinement.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/mat.hpp"
 #include "robomill/io/records.hpp"
+#include "robomill/io/sample_source.hpp"
+#include "robomill/io/sandbox.hpp"
 #include "robomill/io/stl.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/files/urdf.hpp"
 #include "robomill/serve/files/inspect.hpp"
 #include "robomill/serve/job_verbs.hpp"
+#include "robomill/serve/process/work.hpp"
 #include "testing/serve/slot.hpp"
 #include "testing/support.hpp"
 
@@ -85,6 +91,40 @@ TEST_F(Escape, ByALinkOfAnyFormat) {
     EXPECT_NE(rejection([&, &reader = read] { reader(root() / ".." / name); }).find(outside), std::string::npos)
         << ending;
   }
+}
+
+// The kernel alone, as it restricts a process that works for the server: each of these links is followed without it.
+TEST_F(Escape, ByALinkWhereNobodyChecksPaths) {
+  std::string rows = "time_s,force_n\n";
+  for (int i = 0; i < 20; ++i) rows += std::to_string(i) + "e-4," + std::to_string(i % 7) + "\n";
+  place_.file("theirs.csv", rows);
+  place_.file("theirs.ngc", "G21 G90 G94\nS6000 M3\nG0 X0 Y0 Z5\nG1 X1 F100\nM2\n");
+  place_.file("theirs.toml", secret);
+  place_.file("theirs.urdf",
+              "<robot name=\"arm\"><link name=\"base\"/><link name=\"tip\"/><joint name=\"j\" type=\"revolute\">"
+              "<parent link=\"base\"/><child link=\"tip\"/><axis xyz=\"0 0 1\"/>"
+              "<limit lower=\"-1\" upper=\"1\" velocity=\"1\" effort=\"1\"/></joint></robot>\n");
+  io::write_wav(place_.at("theirs.wav"), std::vector<float>(100, 0.5F), 1, 1000.0);
+  io::write_mat(place_.at("theirs.mat"), {{.name = "force", .re = Eigen::VectorXd::LinSpaced(20, 0.0, 1.0)}});
+  const std::vector<std::pair<const char*, std::function<void(const fs::path&)>>> readers = {
+      {"theirs.csv", [](const fs::path& path) { static_cast<void>(io::read_record(path)); }},
+      {"theirs.wav", [](const fs::path& path) { static_cast<void>(io::read_record(path)); }},
+      {"theirs.mat", [](const fs::path& path) { static_cast<void>(io::read_mat(path)); }},
+      {"theirs.ngc", [](const fs::path& path) { static_cast<void>(program::read_program(path)); }},
+      {"theirs.toml", [](const fs::path& path) { static_cast<void>(io::read_file(path)); }},
+      {"theirs.urdf", [](const fs::path& path) { static_cast<void>(robot::read_urdf(path, {.tip = "tip"})); }}};
+  for (const auto& [name, read] : readers) {
+    fs::create_symlink(place_.at(name), root() / name);
+    EXPECT_NO_THROW(read(root() / name)) << name;
+  }
+  bool known = false;
+  std::thread([&] {  // it alone is restricted
+    known = io::restrict_files(file_rights_of_worker(root(), false));
+    if (!known) return;
+    for (const auto& [name, read] : readers) EXPECT_THROW(read(root() / name), InvalidInput) << name;
+  })
+      .join();
+  if (!known) GTEST_SKIP() << "this kernel has no Landlock";
 }
 
 TEST_F(Escape, ByANameInADocument) {

@@ -24,21 +24,21 @@ bool hidden(const fs::path& name) {
 
 }  // namespace
 
+void require_folder(const fs::path& root) {
+  std::error_code error;
+  const fs::directory_iterator content(root, error);
+  if (!error) return;
+  const bool gone = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  throw InvalidInput("folder", gone ? "the folder that is served is gone" : "the folder that is served cannot be read",
+                     "Put it back and start robomill serve anew");
+}
+
 Folder::Folder(const fs::path& root) {
   std::error_code error;
   root_ = fs::canonical(root, error);
   if (error || !fs::is_directory(root_, error)) {
     throw InvalidInput(root.string(), "there is no such folder", "robomill serve FOLDER; the present one without");
   }
-}
-
-void Folder::require_there() const {
-  std::error_code error;
-  const fs::directory_iterator content(root_, error);
-  if (!error) return;
-  const bool gone = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
-  throw InvalidInput("folder", gone ? "the folder that is served is gone" : "the folder that is served cannot be read",
-                     "Put it back and start robomill serve anew");
 }
 
 fs::path Folder::resolve(std::string_view relative) const {

@@ -21,6 +21,10 @@ struct FolderFile {
   bool operator==(const FolderFile&) const = default;
 };
 
+/// Before anything is read or written below it, which would be made anew.
+/// @throws InvalidInput if the folder that is served was taken away or cannot be read
+void require_folder(const std::filesystem::path& root);
+
 /// The folder that is served. Nothing outside it is read or written, nor what has a name with a dot in front.
 class Folder {
  public:
@@ -31,8 +35,6 @@ class Folder {
   explicit Folder(const std::filesystem::path& root);
 
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
-  /// @throws InvalidInput if the folder was taken away or cannot be read
-  void require_there() const;
   /// Where a relative path of a client's leads; there may be nothing yet.
   /// @throws InvalidInput if it is empty, absolute, has "..", a hidden part or a control character, or leads out of the
   ///     folder through a link

@@ -9,7 +9,8 @@
 namespace robomill::serve {
 
 /// Who may have one more connection: an address has three quarters of the places at most, and the last eighth is for
-/// clients that prove by their first header that they may ask.
+/// clients that prove by their first header that they may ask; also of an address that has all of its share, since all
+/// clients of a proxy, and of this machine, have one.
 class Places {
  public:
   enum class Place { none, usual, reserved };
@@ -49,8 +50,7 @@ class Places {
     return place == Place::usual ? taken.usual : taken.reserved;
   }
   [[nodiscard]] Place free_place(const Taken& of_address) const {
-    if (of_address.usual + of_address.reserved >= of_an_address_) return Place::none;
-    if (all_.usual < usual_) return Place::usual;
+    if (all_.usual < usual_ && of_address.usual < of_an_address_) return Place::usual;
     const bool free = all_.reserved < reserved_ && of_address.reserved < reserved_of_an_address_;
     return free ? Place::reserved : Place::none;
   }

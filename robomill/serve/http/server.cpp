@@ -19,10 +19,18 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <deque>
+#include <exception>
 #include <limits>
+#include <memory>
+#include <new>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/serve/http/places.hpp"
@@ -129,6 +137,7 @@ struct Listener : std::enable_shared_from_this<Listener> {
   asio::steady_timer pause{io};
   std::set<std::shared_ptr<Connection>> connections, streams;  ///< of the io thread alone
   std::size_t large_bodies = 0;
+  bool accepts = false;  ///< or waits to do so
   std::atomic<std::size_t> open{0};
   std::jthread thread;
 
@@ -160,8 +169,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     stream_.async_read_some(buffer_.prepare(first_bytes),
                             [self = shared_from_this()](error_code error, std::size_t count) {
                               if (error) return self->close();
-                              self->buffer_.commit(count);
-                              self->guarded([&] { self->read_rest_of_header(); });
+                              self->guarded([&] {
+                                self->buffer_.commit(count);
+                                self->read_rest_of_header();
+                              });
                             });
   }
   void close() {
@@ -171,13 +182,40 @@ class Connection : public std::enable_shared_from_this<Connection> {
     leave();
   }
   void send_event(const std::shared_ptr<const std::string>& text) {
-    queued_bytes_ += text->size();
-    if (queued_bytes_ > most_queued_bytes) return close();
-    queue_.push_back(text);
-    if (queue_.size() == 1) write_event();
+    guarded([&] {
+      queued_bytes_ += text->size();
+      if (queued_bytes_ > most_queued_bytes) return close();
+      queue_.push_back(text);
+      if (queue_.size() == 1) write_event();
+    });
   }
 
  private:
+  /// One response, from any thread. All that it needs but a few bytes was there before: without memory it is given
+  /// later, since the connection waits for it without a limit of time.
+  struct Answer {
+    Answer(std::weak_ptr<Connection> asking, std::weak_ptr<Listener> of)
+        : connection(std::move(asking)), server(std::move(of)) {}
+    void give(const std::shared_ptr<Answer>& self, HttpResponse&& given) {
+      const std::shared_ptr<Listener> there = server.lock();
+      if (!there || is_given.exchange(true)) return;
+      response = std::move(given);
+      for (;;) {
+        try {
+          return asio::post(there->io, [self] {
+            const std::shared_ptr<Connection> there_still = self->connection.lock();
+            if (there_still) there_still->guarded([&] { there_still->respond(std::move(self->response)); });
+          });
+        } catch (const std::bad_alloc&) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+      }
+    }
+    std::weak_ptr<Connection> connection;
+    std::weak_ptr<Listener> server;
+    std::atomic<bool> is_given{false};
+    HttpResponse response = {};
+  };
   /// Without memory, say, one client loses its connection, and no other.
   template <class Step>
   void guarded(const Step& step) {
@@ -244,15 +282,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     request_.body = std::move(parser_->get().body());
     parser_.reset();
     stream_.expires_never();
-    auto once = std::make_shared<std::atomic<bool>>(false);
-    Reply reply = [self = weak_from_this(), server = server_.weak_from_this(), once](HttpResponse response) {
-      const std::shared_ptr<Listener> there = server.lock();
-      if (!there || once->exchange(true)) return;
-      asio::post(there->io, [self, response = std::move(response)]() mutable {
-        const std::shared_ptr<Connection> connection = self.lock();
-        if (connection) connection->guarded([&] { connection->respond(std::move(response)); });
-      });
-    };
+    const Reply reply = [answer = std::make_shared<Answer>(weak_from_this(), server_.weak_from_this())](
+                            HttpResponse response) { answer->give(answer, std::move(response)); };
     try {
       server_.handlers.handle(std::move(request_), reply);
     } catch (const std::exception&) {
@@ -277,8 +308,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     asio::async_write(stream_, parts, [self = shared_from_this()](error_code error, std::size_t) {
       self->response_ = {};
       if (error) return self->close();
-      if (self->keep_) return self->read_header();
-      self->linger();
+      self->guarded([&] { self->keep_ ? self->read_header() : self->linger(); });
     });
   }
   std::string head_of(int status, const std::string& type) const {
@@ -299,7 +329,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void discard() {
     stream_.async_read_some(asio::buffer(waste_), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->close();
-      self->discard();
+      self->guarded([&] { self->discard(); });
     });
   }
   void begin_events() {
@@ -308,6 +338,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     send_event(std::make_shared<const std::string>(head_of(200, "text/event-stream") +
                                                    "Connection: close\r\n\r\nretry: 1000\n\n"));
+    if (!stream_.socket().is_open()) return;
     server_.streams.insert(shared_from_this());
     read_nothing();
     beat();
@@ -316,7 +347,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read_nothing() {
     stream_.socket().async_read_some(asio::buffer(waste_), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->close();
-      self->read_nothing();
+      self->guarded([&] { self->read_nothing(); });
     });
   }
   void beat() {
@@ -324,9 +355,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
     heart_.async_wait([self = weak_from_this()](error_code error) {
       const std::shared_ptr<Connection> connection = self.lock();
       if (error || !connection || !connection->stream_.socket().is_open()) return;
-      static const auto pulse = std::make_shared<const std::string>(":\n\n");
-      connection->send_event(pulse);
-      connection->beat();
+      connection->guarded([&] {
+        static const auto pulse = std::make_shared<const std::string>(":\n\n");
+        connection->send_event(pulse);
+        connection->beat();
+      });
     });
   }
   void write_event() {
@@ -340,7 +373,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                         if (error) return self->close();
                         self->queued_bytes_ -= self->queue_.front()->size();
                         self->queue_.pop_front();
-                        if (!self->queue_.empty()) self->write_event();
+                        if (!self->queue_.empty()) self->guarded([&] { self->write_event(); });
                       });
   }
   void free_large_body() {
@@ -432,12 +465,15 @@ void Listener::listen() {
 
 void Listener::accept() {
   acceptor.async_accept([this](error_code error, Tcp::socket socket) {
+    accepts = false;
     if (error == asio::error::operation_aborted || !acceptor.is_open()) return;
     if (error) {  // no descriptor left, for one: wait until connections end
       pause.expires_after(after(0.05));
       pause.async_wait([this](error_code ended) {
+        accepts = false;
         if (!ended) accept();
       });
+      accepts = true;
       return;
     }
     try {
@@ -447,6 +483,7 @@ void Listener::accept() {
     }
     accept();
   });
+  accepts = true;
 }
 
 void Listener::take(Tcp::socket socket) {
@@ -476,12 +513,15 @@ void Listener::reject(Tcp::socket socket) {
 
 /// Until it is stopped, whatever a step of a connection throws.
 void Listener::run() {
+  constexpr std::chrono::milliseconds pause_without_memory(50);
   for (;;) {
     try {
+      if (!accepts && acceptor.is_open()) accept();
       io.run();
       return;
     } catch (const std::exception&) {
       // No memory for one step, say: the others go on.
+      std::this_thread::sleep_for(pause_without_memory);
     }
   }
 }

@@ -93,8 +93,20 @@ TEST(HttpServer, SlowClientsLeavePlacesForOthers) {
   std::vector<HttpConnection> silent;
   for (int i = 0; i < 12; ++i) silent.emplace_back(http->port(), 2U);
   ASSERT_TRUE(has_open(*http, 12));
-  HttpConnection one_more(http->port(), 2);
-  EXPECT_EQ(one_more.answer().status, 503);
+  {  // Behind a proxy they all have one address: who proves that he may ask has a place.
+    HttpConnection one_more(http->port(), 2);
+    ASSERT_TRUE(one_more.send(test::http_text(http->port(), "GET", "/", {{"X-Known", "yes"}})));
+    EXPECT_EQ(one_more.answer().status, 200);
+    HttpConnection too_many(http->port(), 2);
+    EXPECT_EQ(too_many.answer().status, 503);
+  }
+  ASSERT_TRUE(has_open(*http, 12));
+  {
+    HttpConnection stranger(http->port(), 2);
+    ASSERT_TRUE(stranger.send(test::http_text(http->port(), "GET", "/")));
+    EXPECT_EQ(stranger.answer().status, 503);
+  }
+  ASSERT_TRUE(has_open(*http, 12));
   silent.emplace_back(http->port(), 3U);
   silent.emplace_back(http->port(), 3U);
   ASSERT_TRUE(has_open(*http, 14));

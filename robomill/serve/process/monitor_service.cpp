@@ -45,7 +45,15 @@ HttpRequest http_request_of(const std::string& text) {
 
 void MonitorService::start() {
   options_.last_id = last_id_;
+  const std::lock_guard lock(changing_);
+  if (ended_) throw WorkerEnded("the server ends");
   process_ = std::make_unique<Service>(options_, publish_, [publish = publish_] { publish("monitors", "{}"); });
+}
+
+void MonitorService::end() {
+  const std::lock_guard lock(changing_);
+  ended_ = true;
+  if (process_) process_->end();
 }
 
 /// Of a process that died since.
@@ -53,7 +61,10 @@ void MonitorService::remember_lost() {
   if (!process_) return;
   const std::optional<std::string> fate = process_->fate();
   if (!fate) return;
-  process_.reset();
+  {
+    const std::lock_guard lock(changing_);
+    process_.reset();
+  }
   for (io::Json& spindle : known_) lost_.push_back(failed(std::move(spindle), *fate));
   known_ = io::Json::array();
   while (lost_.size() > MonitorSessions::most) lost_.erase(lost_.begin());

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -13,7 +14,7 @@
 namespace robomill::serve {
 
 /// What the addresses at /api/monitors answer (MonitorSessions), out of a process of its own. Where that dies, its
-/// spindles stay listed as failed, with what it died of. Used by one thread.
+/// spindles stay listed as failed, with what it died of. Used by one thread, but for end().
 class MonitorService {
  public:
   MonitorService(WorkerOptions options, Service::Publish publish)
@@ -21,6 +22,8 @@ class MonitorService {
 
   /// @throws WorkerEnded if the process dies of it
   [[nodiscard]] HttpResponse answer(const HttpRequest& request);
+  /// Ends the process, and with it what is asked; later there is none. From any thread.
+  void end();
 
  private:
   [[nodiscard]] HttpResponse answer_of_all(const HttpRequest& request);
@@ -34,6 +37,8 @@ class MonitorService {
   io::Json known_ = io::Json::array();  ///< spindles of the process, as it listed them last
   io::Json lost_ = io::Json::array();   ///< of processes that died
   int last_id_ = 0;
+  std::mutex changing_;  ///< of process_, by the thread that asks, and of ended_
+  bool ended_ = false;
   std::unique_ptr<Service> process_;
 };
 

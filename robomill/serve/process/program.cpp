@@ -8,10 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <thread>
 
 #include "robomill/base/parallel.hpp"
@@ -33,6 +35,29 @@ std::string what_became(int status) {
     return fmt::format("its process crashed (signal {}, {})", signal, ::strsignal(signal));
   }
   return fmt::format("its process ended with exit code {}", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+}
+
+/// Of the server's environment what such a process needs. Others name services (SSH_AUTH_SOCK), or are secrets.
+std::vector<std::string> environment_of_worker() {
+  constexpr std::array<std::string_view, 7> needed = {"PATH",          "LANG",         "TZ",      "LD_LIBRARY_PATH",
+                                                      "SSL_CERT_FILE", "SSL_CERT_DIR", "LANGUAGE"};
+  std::vector<std::string> out;
+  for (char** one = environ; one != nullptr && *one != nullptr; ++one) {
+    const std::string_view text = *one;
+    const std::string_view name = text.substr(0, text.find('='));
+    const bool kept = std::ranges::find(needed, name) != needed.end() || name.starts_with("LC_") ||
+                      name.ends_with("SAN_OPTIONS");  // of builds with sanitizers
+    if (kept) out.emplace_back(text);
+  }
+  return out;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> out;
+  out.reserve(words.size() + 1);
+  for (std::string& word : words) out.push_back(word.data());
+  out.push_back(nullptr);
+  return out;
 }
 
 /// What a process is started with: one end of a pair of sockets, no input, nobody who reads what it prints, and nothing
@@ -66,11 +91,9 @@ class SpawnActions {
 
   /// An error number; 0: it runs.
   int spawn(pid_t& process, std::vector<std::string> command) const {
-    std::vector<char*> words;
-    words.reserve(command.size() + 1);
-    for (std::string& word : command) words.push_back(word.data());
-    words.push_back(nullptr);
-    return ::posix_spawn(&process, words.front(), &actions_, &attributes_, words.data(), environ);
+    std::vector<std::string> variables = environment_of_worker();
+    const std::vector<char*> words = pointers_to(command), environment = pointers_to(variables);
+    return ::posix_spawn(&process, words.front(), &actions_, &attributes_, words.data(), environment.data());
   }
 
  private:
@@ -104,12 +127,13 @@ WorkerProgram::~WorkerProgram() {
   if (process_ > 0) static_cast<void>(end(true));
 }
 
-bool WorkerProgram::is_gone_within(milliseconds time, int& status) const {
+WorkerProgram::State WorkerProgram::state_within(milliseconds time, int& status) const {
   constexpr milliseconds step(10);
   for (milliseconds spent(0);; spent += step) {
     const pid_t gone = ::waitpid(process_, &status, WNOHANG);
-    if (gone == process_) return true;
-    if ((gone < 0 && errno != EINTR) || spent >= time) return false;
+    if (gone == process_) return State::gone;
+    if (gone < 0 && errno != EINTR) return State::unknown;
+    if (spent >= time) return State::runs;
     std::this_thread::sleep_for(step);
   }
 }
@@ -118,13 +142,19 @@ std::string WorkerProgram::end(bool ask_it) {
   int status = 0;
   ::close(socket_);  // by which it learns that it is to end, too
   socket_ = -1;
-  if (ask_it) ::kill(process_, SIGTERM);
-  if (!is_gone_within(ask_it ? to_clean_up : to_be_reaped, status)) {
+  State state = state_within(milliseconds(0), status);
+  if (state == State::runs && ask_it) ::kill(process_, SIGTERM);
+  if (state == State::runs) state = state_within(ask_it ? to_clean_up : to_be_reaped, status);
+  const bool killed = state == State::runs;
+  if (killed) {
     ::kill(process_, SIGKILL);
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }
   }
   process_ = -1;
+  if (killed) return "its process closed its connection, did not end and was killed";
+  // Somebody else waited for it, or SIGCHLD is ignored: its number may be another's by now, and is not killed.
+  if (state == State::unknown) return "its process is gone, and nobody knows of what";
   return what_became(status);
 }
 

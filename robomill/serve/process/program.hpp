@@ -44,7 +44,8 @@ class WorkerProgram {
   std::string end(bool ask_it);
 
  private:
-  [[nodiscard]] bool is_gone_within(std::chrono::milliseconds time, int& status) const;
+  enum class State { runs, gone, unknown };
+  [[nodiscard]] State state_within(std::chrono::milliseconds time, int& status) const;
   pid_t process_ = -1;
   int socket_ = -1;
 };

@@ -16,12 +16,21 @@ Service::Service(const WorkerOptions& options, Publish publish, std::function<vo
     : program_(options), publish_(std::move(publish)), died_(std::move(died)), listener_([this] { listen(); }) {}
 
 Service::~Service() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-    if (!fate_) ::shutdown(program_.socket(), SHUT_RDWR);  // which wakes the listener, and ends the process
-  }
+  end();
   listener_.join();
+}
+
+void Service::end() {
+  const std::lock_guard lock(mutex_);
+  ending_ = true;
+  end_because("");
+}
+
+/// Shutting the socket down wakes the listener, which ends the process. mutex_ is held.
+void Service::end_because(const char* reason) {
+  if (fate_) return;
+  if (reason_.empty()) reason_ = reason;
+  ::shutdown(program_.socket(), SHUT_RDWR);
 }
 
 void Service::take(const Frame& frame) {
@@ -51,12 +60,14 @@ void Service::listen() {
       while (const std::optional<Frame> frame = frames.next()) take(*frame);
     }
   } catch (const std::exception&) {
-    // What it says cannot be understood, or kept: it is ended.
+    const std::lock_guard lock(mutex_);
+    end_because("its process said what cannot be understood, or kept");
   }
   bool tells = false;
   {
     const std::lock_guard lock(mutex_);
-    fate_ = program_.end(false);
+    const std::string end = program_.end(false);
+    fate_ = reason_.empty() ? end : reason_;
     tells = !ending_;
     changed_.notify_all();
   }
@@ -72,8 +83,12 @@ HttpResponse Service::ask(char kind, std::string_view body) {
     const bool told = changed_.wait_for(lock, most, [this] { return answer_ || fate_; });
     if (answer_) return *std::exchange(answer_, std::nullopt);
     if (told) throw WorkerEnded(*fate_);
+    end_because("its process did not answer for a minute and was ended");
+  } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+    end_because("its process took no question for 10 s and was ended");
+  } else {
+    end_because("");
   }
-  if (!fate_) ::shutdown(program_.socket(), SHUT_RDWR);  // the listener ends it
   changed_.wait(lock, [this] { return fate_.has_value(); });
   throw WorkerEnded(*fate_);
 }

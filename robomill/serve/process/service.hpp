@@ -30,6 +30,8 @@ class Service {
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
+  /// Ends it before; its end is no news then. From any thread.
+  void end();
   /// What it answers. From one thread. @throws WorkerEnded if it is over, or did not answer for a minute
   [[nodiscard]] HttpResponse ask(char kind, std::string_view body);
   /// What became of it; nothing while it runs.
@@ -38,6 +40,7 @@ class Service {
  private:
   void listen();
   void take(const Frame& frame);
+  void end_because(const char* reason);
 
   WorkerProgram program_;
   const Publish publish_;
@@ -46,6 +49,7 @@ class Service {
   std::condition_variable changed_;
   std::optional<HttpResponse> answer_ = {};
   std::optional<std::string> fate_ = {};
+  std::string reason_ = {};  ///< why it is ended, where that is known better than from how it ends
   bool ending_ = false;
   std::thread listener_;
 };

@@ -80,6 +80,19 @@ TEST_F(ServiceTest, SaysWhatItDiedOf) {
 TEST_F(ServiceTest, EndsWhereItCannotBeUnderstood) {
   start("echo hello, server >&3; exec cat <&3 >/dev/null");
   EXPECT_EQ(events(1), std::vector<std::string>{"died"});
+  EXPECT_NE(asked().find("cannot be understood"), std::string::npos);
+}
+
+TEST_F(ServiceTest, IsEndedWhileItIsAsked) {
+  start("exec sleep 600");
+  std::thread later([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    service_->end();
+  });
+  EXPECT_NE(asked().find("its process"), std::string::npos);  // and not after a minute
+  later.join();
+  service_.reset();
+  EXPECT_TRUE(events_.empty());
 }
 
 TEST(MonitorServiceTest, ForwardsRequests) {

@@ -44,6 +44,7 @@
 #include "robomill/serve/process/frames.hpp"
 #include "robomill/serve/process/job_process.hpp"
 #include "robomill/serve/process/monitor_service.hpp"
+#include "robomill/serve/process/work.hpp"
 #include "robomill/serve/serve.hpp"
 
 namespace robomill::serve {
@@ -75,16 +76,7 @@ struct Rights {
       set_cost_limit(limit);
     }
     set_thread_count(threads);
-    io::FileRights files = {.readable = {"/usr/lib", "/usr/share/zoneinfo", "/lib", "/lib64", "/etc/ld.so.cache",
-                                         "/etc/localtime", "/proc/self", "/sys/devices/system"},
-                            .writable = {root, "/dev/null"},
-                            .connects = connects};
-    if (connects) {  // names of hosts, and certificates
-      for (const char* path : {"/etc", "/usr", "/run/systemd/resolve", "/run/resolvconf", "/dev/urandom"}) {
-        files.readable.emplace_back(path);
-      }
-    }
-    static_cast<void>(io::restrict_files(files));  // without Landlock the folder's Confinement remains
+    static_cast<void>(io::restrict_files(file_rights_of_worker(root, connects)));  // else its Confinement remains
   }
 };
 
@@ -138,7 +130,7 @@ class Work {
       try {
         answer(asked);
       } catch (const std::exception&) {  // no memory for the answer
-        send(Frame::answer, R"(500 {"error":{"text":"not enough memory for this"}})");
+        send(Frame::answer, no_memory_);
       }
     }
   }
@@ -152,7 +144,7 @@ class Work {
     HttpResponse found = answer_of(folder_.root(), [&] { return answer_to(asked); });
     const std::string status = fmt::format("{} ", found.status);
     if (status.size() + found.body.size() > longest_answer) {
-      return send(Frame::answer, R"(500 {"error":{"text":"the answer is longer than 256 MB"}})");
+      return send(Frame::answer, frame_text(error_response(500, "the answer is longer than 256 MB")));
     }
     send(Frame::answer, found.body.insert(0, status));
   }
@@ -232,6 +224,12 @@ class Work {
     send(Frame::progress, io::plain_text({{"task", task}, {"fraction", io::number(fraction)}}));
   }
 
+  static std::string frame_text(const HttpResponse& response) {
+    return fmt::format("{} {}", response.status, response.body);
+  }
+
+  const std::string no_memory_ =
+      frame_text(error_response(500, "not enough memory for this"));  ///< made while there is some
   Rights rights_;
   Folder folder_;
   io::Confinement confinement_;
@@ -249,6 +247,19 @@ class Work {
 };
 
 }  // namespace
+
+io::FileRights file_rights_of_worker(const std::filesystem::path& root, bool connects) {
+  io::FileRights files = {.readable = {"/usr/lib", "/usr/share/zoneinfo", "/lib", "/lib64", "/etc/ld.so.cache",
+                                       "/etc/localtime", "/proc/self", "/sys/devices/system"},
+                          .writable = {root, "/dev/null"},
+                          .connects = connects};
+  if (connects) {  // names of hosts, and certificates
+    for (const char* path : {"/etc", "/usr", "/run/systemd/resolve", "/run/resolvconf", "/dev/urandom"}) {
+      files.readable.emplace_back(path);
+    }
+  }
+  return files;
+}
 
 int work_for_server(OpenStream open_stream) {
   int type = 0;

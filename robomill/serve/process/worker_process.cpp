@@ -65,7 +65,10 @@ bool WorkerProcess::read(milliseconds look) {
 std::optional<HttpResponse> WorkerProcess::answer_in_what_came(const Question& question) {
   try {
     while (std::optional<Frame> frame = frames_.next()) {
-      if (frame->kind == Frame::answer) return response_of(frame->body);
+      if (frame->kind == Frame::answer) {
+        open_ = false;
+        return response_of(frame->body);
+      }
       if (frame->kind == Frame::progress) report_progress(question.report, frame->body);
     }
   } catch (const std::length_error&) {
@@ -83,8 +86,19 @@ std::string WorkerProcess::reap(bool kill_it) {
 HttpResponse WorkerProcess::ask(const Question& question) {
   const std::lock_guard lock(asking_);
   if (ended_) throw Interrupted();
+  try {
+    return answer_to(question);
+  } catch (...) {
+    // No memory here, or a report that throws: the next question would get the answer of this one.
+    if (program_ && open_) static_cast<void>(reap(true));
+    throw;
+  }
+}
+
+HttpResponse WorkerProcess::answer_to(const Question& question) {
   if (program_ && is_gone()) program_.reset();  // while nobody asked it
   if (!program_) start();
+  open_ = true;
   if (!send_frame(program_->socket(), question.kind, question.body)) throw WorkerEnded(reap(false));
   const Clock::time_point last = Clock::now() + question.most;
   std::optional<Clock::time_point> deadline = {};

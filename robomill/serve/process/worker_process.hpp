@@ -42,7 +42,7 @@ class WorkerProcess {
 
   /// What the process answers. From one thread after the other.
   /// @throws Interrupted if the question was stopped, WorkerEnded if the process died, cannot be started or took too
-  ///     long
+  ///     long; what report throws: the process is ended then
   [[nodiscard]] HttpResponse ask(const Question& question);
   /// Stops what is asked, and all that is asked later. From any thread.
   void end() { ended_ = true; }
@@ -54,6 +54,7 @@ class WorkerProcess {
   /// What has come, after `look` at most. False where the other end is gone.
   [[nodiscard]] bool read(std::chrono::milliseconds look);
   [[nodiscard]] std::optional<HttpResponse> answer_in_what_came(const Question& question);
+  [[nodiscard]] HttpResponse answer_to(const Question& question);
   /// WorkerProgram::end.
   [[nodiscard]] std::string reap(bool kill_it);
 
@@ -63,6 +64,7 @@ class WorkerProcess {
   std::mutex asking_;
   std::unique_ptr<WorkerProgram> program_;
   bool was_started_ = false;
+  bool open_ = false;  ///< a question was sent, and its answer has not come
   FrameReader frames_{longest_answer};
 };
 

@@ -4,11 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 
+#include "robomill/io/file.hpp"
+#include "robomill/io/sandbox.hpp"
+#include "robomill/serve/process/work.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::serve {
@@ -34,6 +41,7 @@ TEST(WorkerProcess, SaysWhatItsProcessDiedOf) {
   for (const auto& [commands, text] : {std::pair{"kill -KILL $$", "was killed"},
                                        {"kill -SEGV $$", "crashed (signal 11"},
                                        {"exit 7", "exit code 7"},
+                                       {"exec 3>&-; trap '' TERM; exec sleep 20", "did not end and was killed"},
                                        {"echo hello, server >&3; exec sleep 20", "cannot be understood"}}) {
     WorkerProcess process(shell(commands));
     const std::string said = asked(process, {.kind = Frame::job});
@@ -41,6 +49,15 @@ TEST(WorkerProcess, SaysWhatItsProcessDiedOf) {
   }
   WorkerProcess none(WorkerOptions{.command = {"/no/such/program"}, .root = "/"});
   EXPECT_NE(asked(none, {.kind = Frame::job}).find("cannot be started"), std::string::npos);
+}
+
+TEST(WorkerProcess, DoesNotGuessWhatNobodyKnows) {
+  // As a launcher may have it: then the kernel keeps no word of how a process ended.
+  std::signal(SIGCHLD, SIG_IGN);
+  WorkerProcess process(shell("exit 7"));
+  const std::string said = asked(process, {.kind = Frame::job});
+  std::signal(SIGCHLD, SIG_DFL);
+  EXPECT_NE(said.find("nobody knows of what"), std::string::npos) << said;
 }
 
 TEST(WorkerProcess, ReadsAnAnswer) {
@@ -70,6 +87,17 @@ TEST(WorkerProcess, IsKilledWhereItDoesNotStop) {
   EXPECT_NE(asked(deaf, long_one).find("took longer"), std::string::npos);  // another process
 }
 
+TEST(WorkerProcess, GivesNoQuestionTheAnswerOfAnother) {
+  const test::Folder place;
+  // Each process says how far it is, and answers with its number.
+  WorkerProcess process(shell("cd '" + place.path().string() +
+                              "'; echo >> count; printf 'f\\034\\000\\000\\000{\"task\":\"a\",\"fraction\":0.25}' >&3; "
+                              "printf 'a\\005\\000\\000\\000200 %d' $(wc -l < count) >&3; exec cat <&3 >/dev/null"));
+  const auto report = [](const std::string&, double) { throw std::runtime_error("an error"); };
+  EXPECT_THROW(static_cast<void>(process.ask({.kind = Frame::lobes, .report = report})), std::runtime_error);
+  EXPECT_EQ(asked(process, {.kind = Frame::lobes}), "2");
+}
+
 TEST(WorkerProcess, EndsFromAnotherThread) {
   WorkerProcess process(shell("exec sleep 20"));
   std::thread later([&] {
@@ -79,6 +107,41 @@ TEST(WorkerProcess, EndsFromAnotherThread) {
   EXPECT_EQ(asked(process, {.kind = Frame::job}), "interrupted");
   later.join();
   EXPECT_EQ(asked(process, {.kind = Frame::job}), "interrupted");
+}
+
+TEST(WorkerProcess, GivesItNoSecretOfTheEnvironment) {
+  const test::Folder place;
+  ::setenv("SSH_AUTH_SOCK", "/run/agent", 1);
+  ::setenv("LC_ROBOMILL_TEST", "C", 1);
+  WorkerProcess process(shell("env > '" + place.at("seen.txt").string() + "'; exit 7"));
+  EXPECT_NE(asked(process, {.kind = Frame::job}).find("exit code 7"), std::string::npos);
+  ::unsetenv("SSH_AUTH_SOCK");
+  ::unsetenv("LC_ROBOMILL_TEST");
+  const std::string seen = io::read_file(place.at("seen.txt"));
+  EXPECT_EQ(seen.find("/run/agent"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("LC_ROBOMILL_TEST=C"), std::string::npos) << seen;
+}
+
+TEST(WorkerRights, OpenNothingBesideTheFolder) {
+  const test::Folder place;
+  std::filesystem::create_directories(place.at("served"));
+  const std::filesystem::path own = place.file("served/own.toml", "a = 1\n"),
+                              beside = place.file("beside.toml", "b = 2\n");
+  const auto opens = [](const std::filesystem::path& path) { return std::ifstream(path).good(); };
+  ASSERT_TRUE(opens(beside) && opens("/etc/passwd"));
+  for (const bool connects : {false, true}) {
+    bool known = false;
+    std::thread([&] {  // it alone is restricted
+      known = io::restrict_files(file_rights_of_worker(place.at("served"), connects));
+      if (!known) return;
+      EXPECT_TRUE(opens(own));
+      EXPECT_FALSE(opens(beside));
+      EXPECT_EQ(opens("/etc/passwd"), connects);  // which is no secret; the system's settings are with it
+      EXPECT_FALSE(opens("/proc/1/environ"));
+    })
+        .join();
+    if (!known) GTEST_SKIP() << "this kernel has no Landlock";
+  }
 }
 
 TEST(WorkerProcess, GivesItNoDescriptorBeside) {
