@@ -54,11 +54,45 @@ TEST(EventFile, OfAStreamGoesOnFromSessionToSession) {
   EXPECT_EQ(all[3].at("event"), "two");
 }
 
+// A service whose start fails again and again leaves nothing.
+TEST(EventFile, BeginsWithTheSession) {
+  const test::Folder folder;
+  const auto path = folder.at("events.jsonl");
+  { const EventFile file(stream(path)); }
+  EXPECT_EQ(test::slurp(path), "");
+  EventFile file(stream(path));
+  file.begin();
+  EXPECT_TRUE(file.write("{}\n"));
+  file.begin();
+  EXPECT_EQ(events(path).size(), 2U);
+}
+
+TEST(EventFile, SaysThatItsFileWasMoved) {
+  const test::Folder folder;
+  const auto path = folder.at("events.jsonl");
+  live::Notices notices;
+  live::MetricValues metrics;
+  testing::internal::CaptureStderr();
+  EventFile file(stream(path));
+  file.report_to(notices, metrics);
+  file.begin();
+  std::filesystem::rename(path, folder.at("events.1"));
+  EXPECT_TRUE(file.write("{\"event\":\"one\"}\n"));
+  EXPECT_TRUE(file.write("{\"event\":\"two\"}\n"));
+  EXPECT_NO_THROW(file.require_saved());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "robomill: " + path.string() + ": was moved or removed; events go on in another file there\n");
+  const std::vector<live::Notice> said = notices.take(live::Notices::Clock::now(), true);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].what, "events-file-moved");
+  EXPECT_EQ(events(path).size(), 2U);
+}
+
 TEST(EventFile, SaysThatTheLineBeforeWasNotFinished) {
   const test::Folder folder;
   const auto path = folder.file("events.jsonl", "{\"event\":\"sta");
   testing::internal::CaptureStderr();
-  { EventFile file(stream(path)); }
+  EventFile(stream(path)).begin();
   EXPECT_NE(testing::internal::GetCapturedStderr().find("its last line was not finished"), std::string::npos);
   const std::vector<json> all = events(path);
   ASSERT_EQ(all.size(), 2U);

@@ -432,6 +432,7 @@ TEST(OrderDetector, IsBlindBelowTheSpeedWhoseOrdersCanBeToldApart) {
   for (const double rpm : {250.0, 301.0}) {
     const SyntheticCut cut{.rotation_hz = rpm / 60.0, .teeth = 10, .chatter_hz = 300.0, .chatter = 3.0};
     for (const Decision& d : decisions_of(options_for(cut), vibration(cut))) {
+      if (std::abs(d.time_s - 1.0) < 0.05) continue;
       EXPECT_EQ(d.reason == BlindReason::speed_unknown, rpm < 300.0 && d.time_s > 1.0 && d.state != State::chatter)
           << rpm << " " << d.time_s;
     }
