@@ -1,8 +1,11 @@
 // The file of the events: of a recording whole or not at all, of a stream from session to session.
 #include "event_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -124,6 +127,54 @@ TEST(EventFile, SaysThatEventsCannotBeSaved) {
   const std::string text = metrics.text();
   EXPECT_NE(text.find("\nrobomill_unsaved_events 12\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\nrobomill_event_log_failures_total 1\n"), std::string::npos) << text;
+}
+
+/// Standard output of this process, on a full disk.
+class FullOutput {
+ public:
+  FullOutput() : kept_(::dup(STDOUT_FILENO)) {
+    std::fflush(stdout);
+    const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+    ::dup2(full, STDOUT_FILENO);
+    ::close(full);
+  }
+  ~FullOutput() {
+    ::dup2(kept_, STDOUT_FILENO);
+    ::close(kept_);
+  }
+  FullOutput(const FullOutput&) = delete;
+  FullOutput& operator=(const FullOutput&) = delete;
+
+ private:
+  int kept_;
+};
+
+// A stream goes on, says so once and counts; a recording ends.
+TEST(EventFile, StandardOutputThatTakesNothingEndsNoStream) {
+  for (const bool is_stream : {true, false}) {
+    EventFile file({.place = "-", .is_stream = is_stream});
+    testing::internal::CaptureStderr();
+    bool first = false, second = false;
+    {
+      const FullOutput full;
+      first = file.write("{}\n");
+      second = file.write("{}\n");
+    }
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(first, is_stream);
+    EXPECT_EQ(second, is_stream);
+    if (is_stream) {
+      EXPECT_EQ(
+          said,
+          "robomill: standard output takes no events: No space left on device; the monitor goes on without them\n");
+      file.close();
+      EXPECT_EQ(test::rejection([&] { file.require_saved(); }),
+                "standard output: 2 events could not be written. Is the disk full?");
+    } else {
+      EXPECT_EQ(said, "");
+      EXPECT_NE(test::rejection([&] { file.close(); }), "accepted");
+    }
+  }
 }
 
 TEST(EventFile, OfARecordingIsWholeOrNotAtAll) {
