@@ -87,6 +87,7 @@
 #include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/live/path_actuator.hpp"
+#include "robomill/live/published_state.hpp"
 #include "robomill/live/recorded_run.hpp"
 #include "robomill/live/recorder.hpp"
 #include "robomill/live/session.hpp"

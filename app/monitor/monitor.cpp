@@ -234,6 +234,8 @@ class Outlets {
 
   void report_to(live::Session& session) { events_.report_to(session.notices(), session.metrics()); }
   void send_by(Broker& broker) { broker_ = &broker; }
+  /// All that the session needs is there.
+  void begin() { events_.begin(); }
   /// @throws InvalidInput if an event could not be written
   void close() {
     watch_.reset();
@@ -253,7 +255,7 @@ class Outlets {
     if (news && !watch_) print_event(common_->wants_summary() ? stdout : stderr, event);
     // That no samples come is no decision.
     if (watch_ && event.decision.state == monitor::State::blind) watch_->show(event.decision, event.time_s);
-    return events_.write(line);
+    return events_.write(line, event.kind == MonitorEvent::Kind::window);
   }
   /// Of another thread, while the session's hangs: perhaps in front of a terminal that was stopped, which comes last.
   void take_beside(const MonitorEvent& event, const std::string& line) {
@@ -332,6 +334,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   {
     std::optional<Broker> broker;
     connect(input, file, session, stop, outlets, broker);
+    outlets.begin();
     std::optional<live::SourceInput> reader;
     if (input.source) {
       reader.emplace(std::move(input.source), file, session.queue(), session.notices(), session.metrics(),

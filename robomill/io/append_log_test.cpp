@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <set>
 #include <sstream>
 #include <string>
@@ -148,6 +149,81 @@ TEST(AppendLog, SaysHowManyWereTooManyToKeep) {
     EXPECT_EQ(content(path), says ? "lost 8\n8\n9\n10\n" : "8\n9\n10\n");
     EXPECT_EQ(log.state().lost, 8U);
   }
+}
+
+// Lines that matter less are lost before the older ones that matter.
+TEST(AppendLog, LosesMinorLinesFirst) {
+  const Folder folder;
+  const fs::path path = folder.at("e.jsonl");
+  AppendLog log(path, {.most_waiting = 3, .lost_line = lost_line});
+  {
+    const test::FileSizeLimit full(0);
+    (void)log.write("alarm\n");
+    for (int i = 0; i < 10; ++i) (void)log.write(std::to_string(i) + "\n", true);
+    EXPECT_EQ(log.write("end\n").lost, 9U);
+  }
+  EXPECT_EQ(log.retry().waiting, 0U);
+  EXPECT_EQ(content(path), "lost 9\nalarm\n9\nend\n");
+}
+
+// What a rotation moves away, or a user removes, is not written to: nobody would find it.
+TEST(AppendLog, FollowsItsPlace) {
+  const Folder folder;
+  const fs::path path = folder.at("e.jsonl");
+  AppendLog log(path, {});
+  EXPECT_EQ(log.write("1\n").moved, 0U);
+  fs::rename(path, folder.at("e.1"));
+  EXPECT_EQ(log.write("2\n").moved, 1U);
+  fs::remove(path);
+  EXPECT_EQ(log.write("3\n").moved, 2U);
+  fs::rename(path, folder.at("e.2"));
+  folder.file("e.jsonl", "half");
+  EXPECT_EQ(log.write("4\n").moved, 3U);
+  EXPECT_EQ(log.write("5\n").moved, 3U);
+  EXPECT_EQ(content(folder.at("e.1")), "1\n");
+  EXPECT_EQ(content(folder.at("e.2")), "3\n");
+  EXPECT_EQ(content(path), "half\n4\n5\n");
+  fs::remove(path);
+  fs::create_directory(path);
+  AppendLog::State state = log.write("6\n");
+  EXPECT_EQ(state.error, EEXIST);
+  EXPECT_EQ(state.waiting, 1U);
+  fs::remove(path);
+  state = log.retry();
+  EXPECT_EQ(state.error, 0);
+  EXPECT_EQ(content(path), "6\n");
+}
+
+// An exception on the way loses nothing, and the log goes on.
+TEST(AppendLog, GoesOnAfterAnException) {
+  const Folder folder;
+  const fs::path path = folder.at("e.jsonl");
+  bool throws = true;
+  AppendLog log(path, {.most_waiting = 1, .lost_line = [&](std::uint64_t count) {
+                         if (throws) throw std::bad_alloc();
+                         return lost_line(count);
+                       }});
+  {
+    const test::FileSizeLimit full(0);
+    (void)log.write("1\n");
+    EXPECT_THROW((void)log.write("2\n"), std::bad_alloc);
+  }
+  throws = false;
+  EXPECT_EQ(log.retry().waiting, 0U);
+  EXPECT_EQ(content(path), "lost 1\n2\n");
+}
+
+TEST(AppendLog, IsDurableOnceClosed) {
+  const Folder folder;
+  AppendLog log(folder.at("e.jsonl"), {});
+  (void)log.write("1\n");
+  EXPECT_EQ(log.close().error, 0);
+  const AppendLog::State state = log.write("2\n");
+  EXPECT_NE(state.error, 0);
+  EXPECT_EQ(state.waiting, 1U);
+  AppendLog full("/dev/full", {});
+  (void)full.write("1\n");
+  EXPECT_EQ(full.close().error, ENOSPC);
 }
 
 TEST(AppendLog, WritesDevicesAndPipesThrough) {

@@ -31,6 +31,12 @@ monitor::MonitorFile monitor_file(const MonitorPlan& plan) {
   file.options.channels = static_cast<int>(plan.channels.size());
   file.options.teeth = plan.teeth;
   file.options.false_alarms_per_hour = plan.false_alarms_per_hour;
+  // A spindle that turns as slowly as it should does not stand still.
+  double& min_speed_rad_per_s = file.options.min_speed_rad_per_s;
+  for (const SpeedStretch& each : plan.speeds) {
+    min_speed_rad_per_s = std::min(min_speed_rad_per_s, 0.5 * each.spindle_speed_rad_per_s);
+  }
+  min_speed_rad_per_s = std::max(min_speed_rad_per_s, monitor::slowest_min_speed_rad_per_s);
   if (plan.one_speed()) file.options.spindle_speed_rad_per_s = plan.speeds.front().spindle_speed_rad_per_s;
   return file;
 }

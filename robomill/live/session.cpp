@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -48,7 +49,8 @@ Session::Session(const monitor::MonitorFile& file, SessionOptions options, Sessi
       monitor_((monitor::validate(file), file.options)),
       queue_(queued_hops),
       actor_(file.act, file.options.spindle_speed_rad_per_s),
-      load_(options.live) {
+      hint_rad_per_s_(file.options.spindle_speed_rad_per_s),
+      load_(options.live, file.options.look_back_s()) {
   if (!file_.recording_folder.empty()) {
     ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
                                      .seconds = file_.recording_s,
@@ -105,16 +107,16 @@ void Session::check_silence(Clock::time_point now) {
 }
 
 void Session::become_blind(BlindReason reason) {
+  take_stall();
   if (last_.state == State::blind && last_.reason == reason) return;
   last_.changed = last_.state != State::blind;
   make_blind(last_, reason);
-  overload_said_ = reason == BlindReason::overloaded;
   metrics_.set_state(last_);
   MonitorEvent event;
   event.kind = MonitorEvent::Kind::state;
   event.time_s = time_s();
   event.decision = last_;
-  emit(event);
+  emit_state(event);
 }
 
 void Session::leave_out(std::uint64_t frames, bool dropped) {
@@ -133,7 +135,6 @@ void Session::judge_load(const Hop& hop) {
   load_.take(hop, time_s(), queue_.size() == 0, Clock::now());
   metrics_.behind_s = load_.behind_s();
   if (!load_.overloaded()) {
-    overload_said_ = false;
     stall_counted_s_ = 0.0;
   } else if (last_.state != State::chatter) {
     become_blind(BlindReason::overloaded);
@@ -142,9 +143,9 @@ void Session::judge_load(const Hop& hop) {
 
 /// What the watchdog has published is the state now.
 void Session::take_stall() {
-  if (!stalled_.exchange(false)) return;
-  load_.stalled();
-  make_blind(last_, BlindReason::overloaded);
+  const PublishedState::Stall stall = published_.take_stall();
+  if (stall.was) load_.stalled();
+  if (stall.published) make_blind(last_, BlindReason::overloaded);
 }
 
 /// Of the watchdog's thread.
@@ -153,9 +154,7 @@ void Session::stall(double more_s, bool begins) {
   stall_counted_s_.fetch_add(more_s);
   metrics_.behind_s.fetch_add(more_s);
   metrics_.queued_hops = queue_.size();
-  if (!begins) return;
-  stalled_ = true;
-  if (overload_said_.exchange(true)) return;
+  if (!begins || !published_.begin_stall()) return;
   MonitorEvent event;
   event.kind = MonitorEvent::Kind::state;
   event.time_s = metrics_.stream_s;
@@ -168,6 +167,7 @@ void Session::stall(double more_s, bool begins) {
   metrics_.set_state(event.decision);
   ++metrics_.events;
   if (outputs_.overloaded) outputs_.overloaded(event, monitor::event_line(event));
+  published_.end_stall();
 }
 
 void Session::count_blind(BlindReason reason, double stream_s) {
@@ -185,10 +185,7 @@ void Session::process(Hop&& hop) {
   leave_out(hop.frames_before, hop.dropped);
   if (hop.restarted) begin_anew();
   judge_load(hop);
-  if (std::isfinite(hop.spindle_speed_rad_per_s) && hop.spindle_speed_rad_per_s != speed_rad_per_s_) {
-    speed_rad_per_s_ = hop.spindle_speed_rad_per_s;
-    monitor_.set_spindle_speed(speed_rad_per_s_);
-  }
+  take_speed(hop.spindle_speed_rad_per_s);
   const auto channels = static_cast<std::size_t>(file_.options.channels);
   std::span<const float> rest = hop.samples;
   while (!rest.empty()) {
@@ -212,6 +209,17 @@ void Session::process(Hop&& hop) {
   }
 }
 
+/// A speed that is not known says nothing against the one before, but that a spindle no longer stands still for sure.
+void Session::take_speed(double rad_per_s) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool known = std::isfinite(rad_per_s) && rad_per_s >= 0.0;
+  const bool was_still = speed_rad_per_s_ < file_.options.min_speed_rad_per_s;
+  if (known ? rad_per_s == speed_rad_per_s_ : !was_still) return;
+  speed_rad_per_s_ = known ? rad_per_s : unknown;
+  const double hint_rad_per_s = hint_rad_per_s_ > 0.0 ? hint_rad_per_s_ : unknown;
+  monitor_.set_spindle_speed(known ? rad_per_s : hint_rad_per_s);
+}
+
 void Session::begin_anew() {
   monitor_.reset();
   base_s_ = time_s();
@@ -220,6 +228,7 @@ void Session::begin_anew() {
 
 void Session::decide(monitor::Decision decision, double compute_s) {
   take_stall();
+  const bool doubt = published_.take_doubt();
   if (load_.overloaded() && decision.state != State::chatter) make_blind(decision, BlindReason::overloaded);
   // Against what was emitted: a detector that begins anew is stable and calls it no change.
   decision.changed = decision.state != last_.state;
@@ -241,7 +250,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   check_hint(decision);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
-  const bool state_news = decision.changed || reason_news || frequency_news;
+  const bool state_news = decision.changed || reason_news || frequency_news || doubt;
   const bool act_due = actor_.observe(decision, time_s);
   const auto event_of = [&](MonitorEvent::Kind kind) {
     MonitorEvent event;
@@ -258,7 +267,11 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   if (!state_news && !window_news && !act_due) return;
   MonitorEvent event = event_of(state_news ? MonitorEvent::Kind::state : MonitorEvent::Kind::window);
   act(event);
-  if (state_news || window_news || !event.command.empty()) emit(event);
+  if (event.kind == MonitorEvent::Kind::state) {
+    emit_state(event);
+  } else if (window_news) {
+    emit(event);
+  }
 }
 
 void Session::check_hint(const monitor::Decision& decision) {
@@ -332,12 +345,19 @@ void Session::emit(const MonitorEvent& event) {
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
 }
 
+void Session::emit_state(const MonitorEvent& event) {
+  published_.begin(event.decision.state == State::blind && event.decision.reason == BlindReason::overloaded);
+  emit(event);
+  published_.end();
+}
+
 void Session::act(MonitorEvent& event) {
   const std::optional<Command> command = actor_.act(event);
   if (!command) return;
   event.kind = MonitorEvent::Kind::state;
   if (!outputs_.command) return;
   outputs_.command(*command);
+  if (command->kind == Command::Kind::spindle_speed) hint_rad_per_s_ = command->spindle_speed_rad_per_s;
   // A stream that carries the speed says itself when the spindle turns at another one.
   if (command->kind == Command::Kind::spindle_speed && std::isnan(speed_rad_per_s_)) {
     monitor_.set_spindle_speed(command->spindle_speed_rad_per_s);

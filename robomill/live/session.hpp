@@ -16,6 +16,7 @@
 #include "robomill/live/load.hpp"
 #include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
+#include "robomill/live/published_state.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/monitor.hpp"
@@ -87,11 +88,13 @@ class ROBOMILL_API Session {
   void check_silence(Clock::time_point now);
   void leave_out(std::uint64_t frames, bool dropped);
   void judge_load(const Hop& hop);
+  void take_speed(double rad_per_s);
   void take_stall();
   void stall(double more_s, bool begins);
   void count_blind(monitor::BlindReason reason, double stream_s);
   void become_blind(monitor::BlindReason reason);
   void emit(const monitor::MonitorEvent& event);
+  void emit_state(const monitor::MonitorEvent& event);
   void advise(monitor::MonitorEvent& event) const;
   void act(monitor::MonitorEvent& event);
   void begin_anew();
@@ -113,11 +116,11 @@ class ROBOMILL_API Session {
   double base_s_ = 0.0;                                                ///< the stream's time less the detector's
   double compute_s_ = 0.0;                                             ///< since the last decision
   double speed_rad_per_s_ = std::numeric_limits<double>::quiet_NaN();  ///< that the stream carries; NaN: none
-  Clock::time_point samples_at_ = Clock::now();                        ///< when the last ones were processed
-  double silence_s_ = 0.0;  ///< since then, where it is longer than the timeout
+  double hint_rad_per_s_;                        ///< where it carries none: the file's, or the one commanded last
+  Clock::time_point samples_at_ = Clock::now();  ///< when the last ones were processed
+  double silence_s_ = 0.0;                       ///< since then, where it is longer than the timeout
   Load load_;
-  std::atomic<bool> stalled_{false};          ///< the watchdog has said so, and this thread does not know it
-  std::atomic<bool> overload_said_{false};    ///< by either thread, as the state that holds
+  PublishedState published_;
   std::atomic<double> stall_counted_s_{0.0};  ///< by the clock, of a time whose samples are not counted yet
   std::uint32_t emitted_faults_ = 0;
   double faults_emitted_s_ = -1e300, speed_known_s_ = 0.0;

@@ -294,7 +294,7 @@ TEST(Session, IsBlindWhileTheStreamSaysThatTheSpindleStandsStill) {
   Kept kept;
   Session session(file, {}, kept.outputs());
   Random random(1);
-  for (const double speed : {0.0, std::nan(""), 0.005, 300.0}) {  // NaN: as before
+  for (const double speed : {0.0, 0.005, 600.0}) {
     for (int i = 0; i < 3; ++i) {
       Hop hop = noise(random);
       hop.spindle_speed_rad_per_s = speed;
@@ -305,8 +305,36 @@ TEST(Session, IsBlindWhileTheStreamSaysThatTheSpindleStandsStill) {
   EXPECT_EQ(kept.events[0].decision.reason, BlindReason::standstill);
   EXPECT_NEAR(kept.events[0].time_s, 0.025, 1.1e-4);
   EXPECT_NE(kept.events[1].decision.state, State::blind);
-  EXPECT_NEAR(kept.events[1].time_s, 0.25, 1.1e-4);
-  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::standstill), 9 * 0.025, 1e-9);
+  EXPECT_NEAR(kept.events[1].time_s, 0.175, 1.1e-4);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::standstill), 6 * 0.025, 1e-9);
+}
+
+// A stream that no longer knows the speed does not say that the spindle still stands: then the file's hint holds, or
+// none. Where it turned, it is taken to turn as before.
+TEST(Session, AnUnknownSpeedEndsAStandstill) {
+  for (const double hint : {300.0, 0.0}) {
+    for (const double unknown : {std::nan(""), -1.0}) {
+      monitor::MonitorFile file = some_file();
+      file.options.spindle_speed_rad_per_s = hint;
+      std::vector<monitor::Decision> decisions;
+      SessionOutputs outputs;
+      outputs.decision = [&](const monitor::Decision& decision, double, double) { decisions.push_back(decision); };
+      Session session(file, {}, std::move(outputs));
+      Random random(1);
+      for (const double speed : {600.0, unknown, 0.0, unknown, unknown}) {
+        Hop hop = noise(random);
+        hop.spindle_speed_rad_per_s = speed;
+        session.process(std::move(hop));
+      }
+      ASSERT_EQ(decisions.size(), 5U);
+      EXPECT_NEAR(decisions[1].spindle_speed_rad_per_s, 600.0, 60.0);
+      EXPECT_EQ(decisions[2].reason, BlindReason::standstill);
+      for (const std::size_t i : {3U, 4U}) {
+        EXPECT_NE(decisions[i].reason, BlindReason::standstill);
+        EXPECT_NEAR(decisions[i].spindle_speed_rad_per_s, hint, 0.15 * hint);
+      }
+    }
+  }
 }
 
 // That there was no room for a hop says nothing of the cut: until the detector's window holds no hole.
@@ -379,10 +407,9 @@ TEST(Session, AnotherThreadSaysThatDecisionsAreStuck) {
   EXPECT_EQ(said[0].decision.reason, BlindReason::overloaded);
   EXPECT_GE(metrics.blind_for_s(BlindReason::overloaded), Load::longest_s);
   EXPECT_GE(metrics.behind_s, Load::longest_s);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_TRUE(wait_for([&] { return metrics.blind_for_s(BlindReason::overloaded) >= Load::longest_s + 0.3; }));
   EXPECT_EQ(count(said), 1U);
   EXPECT_EQ(count(states), 0U);
-  EXPECT_GE(metrics.blind_for_s(BlindReason::overloaded), Load::longest_s + 0.1);
   release.set_value();
   ASSERT_TRUE(wait_for([&] { return metrics.decisions == 5; }));
   EXPECT_EQ(metrics.state, 3);  // of these it was said too late
@@ -390,7 +417,6 @@ TEST(Session, AnotherThreadSaysThatDecisionsAreStuck) {
   ASSERT_TRUE(wait_for([&] { return count(states) == 1; }));
   EXPECT_NE(states[0].decision.state, State::blind);
   EXPECT_TRUE(states[0].decision.changed);
-  EXPECT_LT(metrics.behind_s, 0.5);
   session.queue().close();
 }
 

@@ -12,8 +12,12 @@ constexpr std::chrono::milliseconds period{100};
 
 }  // namespace
 
-Watchdog::Watchdog(const HopQueue& queue, std::function<void(double more_s, bool begins)> stalled)
-    : queue_(&queue), stalled_(std::move(stalled)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+Watchdog::Watchdog(const HopQueue& queue, std::function<void(double more_s, bool begins)> stalled,
+                   std::function<Clock::time_point()> now)
+    : queue_(&queue),
+      stalled_(std::move(stalled)),
+      now_(std::move(now)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void Watchdog::run(const std::stop_token& stop) {
   double counted_s = 0.0;
@@ -23,7 +27,7 @@ void Watchdog::run(const std::stop_token& stop) {
       ended_.wait_for(lock, stop, period, [] { return false; });
     }
     if (stop.stop_requested()) return;
-    const double stalled_s = queue_->stalled_s(std::chrono::steady_clock::now());
+    const double stalled_s = queue_->stalled_s(now_());
     if (stalled_s < Load::longest_s) {
       counted_s = 0.0;
       continue;

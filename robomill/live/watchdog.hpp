@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -14,10 +15,14 @@ namespace robomill::live {
 /// Looks from a thread of its own whether the one that takes hops out of a queue goes on.
 class Watchdog {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// @param stalled  called by that thread ten times a second while a hop has waited for longer than Load::longest_s
   /// and
   ///     nothing was taken: for how long more than at the call before, and whether this is the first of a stall
-  Watchdog(const HopQueue& queue, std::function<void(double more_s, bool begins)> stalled);
+  /// @param now      what the queue's time is compared with
+  Watchdog(const HopQueue& queue, std::function<void(double more_s, bool begins)> stalled,
+           std::function<Clock::time_point()> now = Clock::now);
   /// Waits for a call that is under way.
   ~Watchdog() = default;
   Watchdog(const Watchdog&) = delete;
@@ -28,6 +33,7 @@ class Watchdog {
 
   const HopQueue* queue_;
   std::function<void(double, bool)> stalled_;
+  std::function<Clock::time_point()> now_;
   std::mutex mutex_;
   std::condition_variable_any ended_;
   std::jthread thread_;

@@ -19,7 +19,6 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double silence = 1e-8;  // share of the loudest channel's power below which a channel is dead
-static_assert(ChatterMonitor::look_back_s == Spectra::windows_s.front());
 // Hops in a row at the converter's limit that an impact does not make.
 constexpr std::size_t clipped_hops = 4;
 
@@ -42,7 +41,7 @@ constexpr Name<Fault> fault_names[] = {{"not-finite", Fault::not_finite},
                                        {"wrong-sample-rate", Fault::wrong_sample_rate},
                                        {"speed-unknown", Fault::speed_unknown}};
 
-constexpr double slowest_rpm = 1.0, fastest_rpm = 100'000.0;  // that a spindle may be called to stand still below
+constexpr double fastest_min_speed_rpm = 100'000.0;
 
 void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
   if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
@@ -85,11 +84,11 @@ void MonitorOptions::validate() const {
                        "gives more pulses than half the sample rate can show",
                        "Is spindle_speed_rpm right? Otherwise divide the pulses before they are sampled");
   }
-  require_between("min_speed_rad_per_s", min_speed_rad_per_s, slowest_rpm * units::rpm, fastest_rpm * units::rpm,
-                  "rad/s", "must be between 1 and 100000 rpm");
+  require_between("min_speed_rad_per_s", min_speed_rad_per_s, slowest_min_speed_rad_per_s,
+                  fastest_min_speed_rpm * units::rpm, "rad/s", "must be between 1 and 100000 rpm");
   if (spindle_speed_rad_per_s > 0.0 && spindle_speed_rad_per_s < min_speed_rad_per_s) {
     throw InvalidInput("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s",
-                       "must be at least min_speed: below it the spindle stands still and nothing is judged",
+                       "must be at least the speed below which the spindle stands still and nothing is judged",
                        "Is it in 1/s? 50 1/s are 3000 rpm");
   }
   require_between("speed_std_ratio", speed_std_ratio, 1e-4, 0.2, "", "must be in [0.0001, 0.2]");
@@ -116,12 +115,16 @@ std::size_t MonitorOptions::window_samples() const noexcept {
   return static_cast<std::size_t>(std::lround(window_s * sample_rate_hz));
 }
 
+double MonitorOptions::look_back_s() const noexcept {
+  return std::max(Spectra::windows_s.front(), kind == Kind::energy_entropy ? 2.0 * window_s : 0.0);
+}
+
 struct ChatterMonitor::Parts {
   explicit Parts(const MonitorOptions& o)
       : options(o),
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
-        left_out_hops(static_cast<std::size_t>(std::ceil(ChatterMonitor::look_back_s / o.hop_s - 1e-9)) - 1),
+        left_out_hops(static_cast<std::size_t>(std::ceil(o.look_back_s() / o.hop_s - 1e-9)) - 1),
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
         left_out(channels),

@@ -37,11 +37,11 @@ enum class State {
 /// Why nothing can be said of the cut. The first that applies is given; chatter once found is not blind.
 enum class BlindReason {
   none,
-  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within the last 0.3 s. A
-  /// session also gives it where no samples come.
+  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within
+  /// MonitorOptions::look_back_s(). A session also gives it where no samples come.
   no_signal,
   clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
-  speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's
+  speed_unknown,  ///< no spindle speed was given, and none can be found, or one below 300 rpm: the detector's
   gap,            ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
   standstill,     ///< the spindle turns slower than MonitorOptions::min_speed_rad_per_s
   overloaded      ///< a session's: its decisions are more than a second behind the samples, or hops were left out
@@ -67,6 +67,9 @@ enum Fault : std::uint32_t {
   wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
   speed_unknown = 32       ///< no comb was found: in air, or the tests run without
 };
+
+/// The least MonitorOptions::min_speed_rad_per_s.
+inline constexpr double slowest_min_speed_rad_per_s = 1.0 * units::rpm;
 
 struct ROBOMILL_API MonitorOptions {
   Kind kind = Kind::comb_cusum;
@@ -95,6 +98,9 @@ struct ROBOMILL_API MonitorOptions {
   /// Samples a hop and a window: the times, rounded.
   [[nodiscard]] std::size_t hop_samples() const noexcept;
   [[nodiscard]] std::size_t window_samples() const noexcept;
+  /// Of the stream, how far back a decision looks: the default detector's longest window, or two of the published one's
+  /// where these are longer.
+  [[nodiscard]] double look_back_s() const noexcept;
 };
 
 /// One a hop, by value.
@@ -127,8 +133,6 @@ struct Decision {
 /// Nothing throws, and nothing is allocated, after construction. Not to be used by two threads at once.
 class ROBOMILL_API ChatterMonitor {
  public:
-  static constexpr double look_back_s = 0.3;  ///< of the stream: the default detector's longest window
-
   /// @throws InvalidInput naming an option that is out of range
   explicit ChatterMonitor(const MonitorOptions& options);
   ~ChatterMonitor();

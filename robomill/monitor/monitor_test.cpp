@@ -320,6 +320,13 @@ TEST(ChatterMonitor, AllocatesNothing) {
   }
 }
 
+TEST(MonitorOptions, LookBackAsFarAsTheDetectorDoes) {
+  EXPECT_EQ(MonitorOptions{}.look_back_s(), 0.3);
+  EXPECT_EQ(MonitorOptions{.window_s = 2.0}.look_back_s(), 0.3);
+  EXPECT_EQ((MonitorOptions{.kind = Kind::energy_entropy, .window_s = 0.05}.look_back_s()), 0.3);
+  EXPECT_EQ((MonitorOptions{.kind = Kind::energy_entropy, .window_s = 2.0}.look_back_s()), 4.0);
+}
+
 TEST(MonitorOptions, RejectWhatMakesNoSense) {
   const auto field = [](const MonitorOptions& options) { return test::field_of([&] { options.validate(); }); };
   EXPECT_EQ(field({}), "sample_rate_hz");

@@ -6,6 +6,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/entropy.hpp"
+#include "robomill/monitor/orders/spectra.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -61,17 +62,27 @@ void OrderDetector::high_pass(const Hop& hop) noexcept {
   first_ = false;
 }
 
+// The last pulse of a spindle that stops is followed by none: after the time between two at the slowest speed it rests,
+// until they give a speed again.
+void OrderDetector::count_pulses(const Hop& hop) noexcept {
+  pulses_.push(hop.channel(static_cast<std::size_t>(options_.tachometer_channel)));
+  const double rotation_hz = pulses_.rotation_hz();
+  const double slowest_hz = options_.min_speed_rad_per_s / units::revolution;
+  if (rotation_hz > 0.0) {
+    rests_ = rotation_hz < slowest_hz;
+  } else if (pulses_.quiet_s() * slowest_hz * options_.pulses_per_revolution > 1.0) {
+    rests_ = true;
+  }
+  if (rotation_hz > 0.0 && !rests_) orders_.measured(rotation_hz, pulses_.std_ratio());
+}
+
 void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
   std::uint64_t bad_channels = hop.bad_channels;
-  bool still = hop.still;
   if (options_.tachometer_channel >= 0) {
-    const auto channel = static_cast<std::size_t>(options_.tachometer_channel);
-    pulses_.push(hop.channel(channel));
-    bad_channels |= std::uint64_t{1} << channel;
-    const bool turns = units::revolution * pulses_.rotation_hz() >= options_.min_speed_rad_per_s;
-    if (turns) orders_.measured(pulses_.rotation_hz(), pulses_.std_ratio());
-    still = still || (pulses_.rotation_hz() > 0.0 && !turns);
+    count_pulses(hop);
+    bad_channels |= std::uint64_t{1} << options_.tachometer_channel;
   }
+  const bool still = hop.still || rests_;
   high_pass(hop);
   const CutTests::Verdict orders = orders_.step(samples_, hop.frames, bad_channels, still);
   decision.threshold = 1.0;
@@ -96,7 +107,8 @@ void OrderDetector::report_speed(const CutTests::Verdict& orders, Decision& deci
   decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
   decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
   if (!orders.known) decision.faults |= speed_unknown;
-  unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
+  // Of the orders of so slow a spindle nothing can be said, whether or not it is known.
+  unknown_s_ = hint_hz_ >= lowest_rotation_hz || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
   if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
   doubt_the_sample_rate(orders, decision);
 }

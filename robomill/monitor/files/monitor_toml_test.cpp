@@ -134,8 +134,8 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   expect("[process]\nspindle_speed_rpm = -100\n", "m.toml:5: process.spindle_speed_rpm = -100 rpm");
   expect(
       "[process]\nspindle_speed_rpm = 20\n",
-      "m.toml:5: process.spindle_speed_rpm = 20 rpm; must be at least min_speed: below it the spindle stands still and "
-      "nothing is judged. Is it in 1/s?");
+      "m.toml:5: process.spindle_speed_rpm = 20 rpm; must be at least the speed below which the spindle stands still "
+      "and nothing is judged. Is it in 1/s?");
   expect("[process]\nmin_speed_rpm = 0\n", "m.toml:5: process.min_speed_rpm = 0 rpm; must be between 1 and 100000 rpm");
   expect("[mqtt]\nport = 70000\n", "m.toml:5: mqtt.port = 70000");
   expect("[mqtt]\nca_file = \"ca.pem\"\n", "needs mqtt.tls = true");

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -155,7 +154,8 @@ TEST(SpeedPosterior, WithoutAHintThereIsNone) {
   EXPECT_EQ(speed.known(), 0.0);
 }
 
-// Orders closer than a window tells apart say nothing, and looking for millions of them would take minutes.
+// Orders closer than a window tells apart say nothing, and looking for millions of them would take minutes:
+// ctest's limit would show it.
 TEST(SpeedPosterior, NothingIsLearntOfASpeedWhoseOrdersCannotBeToldApart) {
   Random random(8);
   for (const double hint_hz : {1e-3, 0.5, 4.9}) {
@@ -163,9 +163,7 @@ TEST(SpeedPosterior, NothingIsLearntOfASpeedWhoseOrdersCannotBeToldApart) {
     listen(speed, sum_of(cut_of(80.0, 3, random), rate_hz, 0.8, 0.1));
     EXPECT_GT(speed.share(), 0.7);
     speed.set_hint(hint_hz);
-    const auto begin = std::chrono::steady_clock::now();
     listen(speed, sum_of(cut_of(80.0, 3, random), rate_hz, 0.8, 0.1));
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << hint_hz;
     EXPECT_NEAR(speed.rotation_hz(), hint_hz, 0.1 * hint_hz);
     EXPECT_EQ(speed.share(), 0.0) << hint_hz;
     EXPECT_LT(speed.known(), 0.4) << hint_hz;
