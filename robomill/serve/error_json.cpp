@@ -1,5 +1,6 @@
 #include "robomill/serve/error_json.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <new>
 #include <string>
@@ -9,6 +10,19 @@
 #include "robomill/base/progress.hpp"
 
 namespace robomill::serve {
+namespace {
+
+/// Options of the command line are those of a request here: "--sample-rate-hz" is "options.sample_rate_hz".
+InvalidInput in_words_of_requests(const InvalidInput& error) {
+  InvalidInput::Parts parts = error.parts();
+  if (!parts.field.starts_with("--")) return error;
+  parts.field = "options." + parts.field.substr(2);
+  std::ranges::replace(parts.field, '-', '_');
+  return InvalidInput(std::move(parts));
+}
+
+}  // namespace
+
 std::string without_root(std::string text, const std::filesystem::path& root) {
   if (root == root.root_path()) return text;  // all paths are below it, and "//" is in no path
   const std::string way = root.string() + "/";
@@ -33,7 +47,8 @@ io::Json AnsweredElsewhere::error() const {
   return error_object(response_.body.substr(0, 200));
 }
 
-io::Json error_object(const InvalidInput& error, const std::filesystem::path& root) {
+io::Json error_object(const InvalidInput& given, const std::filesystem::path& root) {
+  const InvalidInput error = in_words_of_requests(given);
   const InvalidInput::Parts& parts = error.parts();
   std::string file = client_text(parts.where, root);
   io::Json line = nullptr;
