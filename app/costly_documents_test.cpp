@@ -173,7 +173,9 @@ TEST_F(CostlyDocuments, WhatWouldTakeHoursIsTakenWhereItIsAskedFor) {
   EXPECT_EQ(rejected.exit, 1);
   EXPECT_NE(rejected.err.find("lobes.spindle_speed_rpm = 2 rpm; would take about "), std::string::npos) << rejected.err;
   EXPECT_NE(rejected.err.find("more than 10 min"), std::string::npos) << rejected.err;
-  EXPECT_NE(rejected.err.find("--allow-large"), std::string::npos) << rejected.err;
+  EXPECT_TRUE(rejected.err.ends_with("Change this number; if it is meant, --allow-large takes it\n")) << rejected.err;
+  EXPECT_EQ(robomill("simulate lobes.toml --at 9000,1 --seconds 1e20 --allow-large --quiet").err,
+            "robomill: --seconds = 1e+20 s; must be at most 1e7 s. No cut takes a hundred days\n");
   EXPECT_EQ(
       shell("timeout -s INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml --quiet --allow-large; echo $? >ended; true")
           .exit,

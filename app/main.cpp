@@ -363,7 +363,7 @@ int run_chosen(int argc, char** argv) {
     require_report_place(line.common.report);
     const io::OutputPlaces outputs(line.outputs());
     set_thread_count(line.common.threads);
-    if (line.allow_large) set_cost_limit(no_cost_limit);
+    set_cost_limit(line.allow_large ? no_cost_limit : CostLimit{.way_out = "--allow-large takes it"});
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
   } catch (const InvalidInput& error) {

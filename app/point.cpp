@@ -2,11 +2,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/cut_limits.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 
 namespace robomill::app {
 
@@ -29,10 +29,7 @@ double spindle_speed(const char* option, double rpm) {
   try {
     cutting::require_spindle_speed(option, rpm * units::rpm);
   } catch (const InvalidInput& error) {
-    InvalidInput::Parts parts = error.parts();
-    parts.number = rpm;
-    parts.unit = "rpm";
-    throw InvalidInput(std::move(parts));
+    throw jobs::in_unit(error, units::rpm, "rpm");
   }
   return rpm * units::rpm;
 }

@@ -26,9 +26,4 @@ void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m) {
   }
 }
 
-void require_pushing_radial(double radial_n_per_m2) {
-  require_non_negative("radial_n_per_m2", radial_n_per_m2, "N/m^2",
-                       "A tooth is pushed out of what it cuts; is the sign that of another convention?");
-}
-
 }  // namespace robomill::cutting

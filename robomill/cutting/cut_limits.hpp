@@ -13,9 +13,4 @@ void require_spindle_speed(const std::string& field, double spindle_speed_rad_pe
 /// @throws InvalidInput unless in [0, 10 mm]
 void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m);
 
-/// A tooth is pushed out of what it cuts. What is computed takes a negative coefficient; who writes one means another
-/// convention of signs.
-/// @throws InvalidInput if negative
-void require_pushing_radial(double radial_n_per_m2);
-
 }  // namespace robomill::cutting

@@ -61,13 +61,20 @@ void require_affordable_rays(double rays, double dexel_m, const Stock& stock) {
   constexpr double usual_dexel_m = 2.5e-4, usual_size_m = 0.3, operations_of_ray = 30.0;
   const double size_m = (stock.highest_m() - stock.lowest_m()).maxCoeff();
   const bool box = stock.shape == Stock::Shape::box;
+  // The corner that lies farther from the origin.
+  const bool low = stock.min_m.cwiseAbs().maxCoeff() > stock.max_m.cwiseAbs().maxCoeff();
+  const Vector3d& corner = low ? stock.min_m : stock.max_m;
+  Eigen::Index axis = 0;
+  corner.cwiseAbs().maxCoeff(&axis);
   require_affordable(
       {.operations = operations_of_ray * rays,
        .bytes = bytes_of_ray * rays,
        .dominant = dominant_of(
            {{.field = "dexel_m", .value = dexel_m, .unit = "m", .times_usual = std::pow(usual_dexel_m / dexel_m, 2)},
-            {.field = box ? "max_m" : "radius_m",
-             .value = box ? stock.max_m.cwiseAbs().maxCoeff() : 0.5 * size_m,
+            {.field = !box  ? "radius_m"
+                      : low ? "min_m"
+                            : "max_m",
+             .value = box ? corner(axis) : 0.5 * size_m,
              .unit = "m",
              .times_usual = std::pow(size_m / usual_size_m, 2)}})});
 }

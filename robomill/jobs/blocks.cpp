@@ -183,12 +183,10 @@ void require_affordable_blocks(std::size_t evaluations, std::size_t blocks) {
   require_affordable(
       {.operations = operations_of_evaluation * different,
        .bytes = bytes_of_block * all,
-       .dominant =
-           dominant_of({{.field = "job.program",
-                         .value = different,
-                         .unit = "different blocks",
-                         .times_usual = different / usual_evaluations},
-                        {.field = "job.program", .value = all, .unit = "blocks", .times_usual = all / usual_blocks}})});
+       .dominant = dominant_of({{.field = "blocks of the program that differ",
+                                 .value = different,
+                                 .times_usual = different / usual_evaluations},
+                                {.field = "blocks of the program", .value = all, .times_usual = all / usual_blocks}})});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/files/posture_json.hpp"
 #include "robomill/jobs/planned_cut.hpp"
@@ -19,7 +20,7 @@ namespace {
 void compute_asked(const LobesJob& job, LobesJobResult& result, Progress& progress) {
   LobesFile& cut = result.cut;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
-    if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
+    if (job.compare) throw cut.document->reject("lobes.sweep", "does not go with a comparison of methods");
     result.sweep = stability::compute_sweep(cut.problem, sweep_options(cut), progress);
     return;
   }

@@ -61,11 +61,14 @@ simulation::PostureCut posture_of(const LobesFile& file, const stability::Operat
   return cut;
 }
 
-/// Speed and depth of the cut are the point's, not the chart's.
-InvalidInput about_point(const InvalidInput& error) {
+/// Speed and depth of the cut are the point's, not the chart's; how it is simulated no document says.
+InvalidInput about_job(const InvalidInput& error) {
   const std::string& field = error.parts().field;
   for (const char* const member : {"spindle_speed_rad_per_s", "axial_depth_m", "radial_width_m"}) {
     if (field.ends_with(member)) return within("points.", error);
+  }
+  for (const char* const member : {"seconds", "sample_rate_hz"}) {
+    if (field == member) return within("options.", error);
   }
   return error;
 }
@@ -76,7 +79,7 @@ simulation::Simulation simulated(const LobesFile& cut, const SimulateJob& job, P
     if (cut.problem.spatial) return simulation::simulate(posture_of(cut, job.point), job.options, progress);
     return simulation::simulate(milling_of(cut, job.point), job.options, progress);
   } catch (const InvalidInput& error) {
-    throw in_words_of(cut, about_point(error));
+    throw in_words_of(cut, about_job(error));
   }
 }
 

@@ -293,12 +293,13 @@ void require_affordable_fit(const FrfSet& used, const FitOptions& options) {
   if (options.method == FitMethod::pso) {
     constexpr double operations_of_value = 0.5, most_lines = 640.0, usual_particles = 400.0, usual_iterations = 8000.0;
     const double particles = options.pso_particles, iterations = options.pso_max_iterations;
-    return require_affordable(
+    require_affordable(
         {.operations = operations_of_value * modes * std::min(lines, most_lines) * frfs * particles * iterations,
          .bytes = 100.0 * modes * particles + 8.0 * iterations,
          .dominant = dominant_of(
              {{.field = "pso_particles", .value = particles, .times_usual = particles / usual_particles},
               {.field = "pso_max_iterations", .value = iterations, .times_usual = iterations / usual_iterations}})});
+    return;
   }
   constexpr double operations_of_order = 5.0, operations_of_mode = 5e3, bytes_of_order = 16.0;
   const double orders = options.lscf_max_order, values = lines * frfs;

@@ -1,5 +1,6 @@
 #include "robomill/serve/error_json.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstddef>
@@ -21,6 +22,15 @@ bool goes_on(const std::string& text, std::size_t at) {
     return std::isalnum(letter) != 0 || letter == '_' || letter == '-' || letter >= 0x80;
   };
   return is_of_name(at) || (at < text.size() && text[at] == '.' && is_of_name(at + 1));
+}
+
+/// Options of the command line are those of a request here: "--sample-rate-hz" is "options.sample_rate_hz".
+InvalidInput in_words_of_requests(const InvalidInput& error) {
+  InvalidInput::Parts parts = error.parts();
+  if (!parts.field.starts_with("--")) return error;
+  parts.field = "options." + parts.field.substr(2);
+  std::ranges::replace(parts.field, '-', '_');
+  return InvalidInput(std::move(parts));
 }
 
 }  // namespace
@@ -54,7 +64,8 @@ io::Json AnsweredElsewhere::error() const {
   return error_object(response_.body.substr(0, 200));
 }
 
-io::Json error_object(const InvalidInput& error, const std::filesystem::path& root) {
+io::Json error_object(const InvalidInput& given, const std::filesystem::path& root) {
+  const InvalidInput error = in_words_of_requests(given);
   const InvalidInput::Parts& parts = error.parts();
   std::string file = client_text(parts.where, root);
   io::Json line = nullptr;

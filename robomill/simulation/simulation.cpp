@@ -55,7 +55,12 @@ void MillingCut::validate() const {
 }
 
 void SimulationOptions::validate() const {
+  // Samples, and steps at the fastest spindle, that an index holds.
+  constexpr double most_s = 1e7;
   require_positive("seconds", seconds, "s");
+  if (seconds > most_s) {
+    throw InvalidInput("seconds", seconds, "s", "must be at most 1e7 s", "No cut takes a hundred days");
+  }
   require_positive("sample_rate_hz", sample_rate_hz, "Hz");
   if (sample_rate_hz > 1e7) throw InvalidInput("sample_rate_hz", sample_rate_hz, "Hz", "must be at most 10 MHz");
   if (seconds * sample_rate_hz < 1.0) {

@@ -12,6 +12,7 @@
 
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
@@ -74,8 +75,8 @@ long long add_chart(Scheme& scheme, const LobesOptions& options, LobesResult& re
   return grid.uncertain;
 }
 
-/// Of the chart, and of its points with their limits.
-void require_affordable_chart(const LobesProblem& problem, const LobesOptions& options) {
+/// Of the chart, and of its points with their limits: the threads that it may use.
+int require_affordable_chart(const LobesProblem& problem, const LobesOptions& options) {
   constexpr double usual_nodes = 40'000.0;
   const double depths = options.grid[1], nodes = options.grid[0] * depths;
   const double larger = std::max(options.grid[0], options.grid[1]);
@@ -91,7 +92,7 @@ void require_affordable_chart(const LobesProblem& problem, const LobesOptions& o
   }
   Cost cost = cost_of_looks(problem, options, even(options.spindle_speed_rad_per_s, options.grid[0]), looks);
   add_cost_of_points(problem, options, cost);
-  require_affordable(cost);
+  return require_affordable(cost);
 }
 
 }  // namespace
@@ -101,7 +102,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   problem.validate();
   options.validate();
   require_known(problem, options.method);
-  require_affordable_chart(problem, options);
+  const ThreadLimit threads(require_affordable_chart(problem, options));
   if (in_frequency_domain(options.method)) {
     LobesResult result = frequency_lobes(problem, options, progress);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -162,12 +163,12 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
   for (const double speed : spindle_speeds_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", speed);
   constexpr double usual_speeds = 200.0;
   const auto speeds = static_cast<double>(spindle_speeds_rad_per_s.size());
-  require_affordable(cost_of_looks(problem, options, spindle_speeds_rad_per_s,
-                                   {.a_speed = looks_a_limit,
-                                    .counted = {.field = "spindle_speeds_rad_per_s",
-                                                .value = speeds,
-                                                .unit = "speeds",
-                                                .times_usual = speeds / usual_speeds}}));
+  const ThreadLimit threads(require_affordable(cost_of_looks(problem, options, spindle_speeds_rad_per_s,
+                                                             {.a_speed = looks_a_limit,
+                                                              .counted = {.field = "spindle_speeds_rad_per_s",
+                                                                          .value = speeds,
+                                                                          .unit = "speeds",
+                                                                          .times_usual = speeds / usual_speeds}})));
   if (in_frequency_domain(options.method)) {
     return frequency_limits(problem, options, spindle_speeds_rad_per_s, progress);
   }

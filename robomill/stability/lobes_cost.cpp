@@ -8,7 +8,6 @@
 #include <string>
 
 #include "robomill/base/lanes.hpp"
-#include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/stability/collocation/cut_mesh.hpp"
@@ -20,6 +19,7 @@ namespace {
 
 constexpr double of_us = 1e3;  // operations of a microsecond
 constexpr double nodes_of_piece = 8.0;
+constexpr double largest_matrix = 1200.0;  // ArnoldiOptions
 
 /// A structure as far as it costs.
 struct CostlyStructure {
@@ -71,6 +71,9 @@ struct CostlyTurn {
   double period_rad = units::revolution, in_pieces_rad = units::revolution;
   double arc_rad = units::revolution;  ///< of one tooth
   double base = 1.0;                   ///< factor of what a period without pieces takes
+  // Runout with helix: which tooth cuts what another left changes with the height, in slices. Where one of them enters
+  // or leaves a piece ends, and looks back to each tooth.
+  double slice_pieces = 0.0, delays = 1.0;
 };
 
 CostlyTurn costly_turn(const LobesProblem& problem, const LobesOptions& options) {
@@ -98,8 +101,12 @@ CostlyTurn costly_turn(const LobesProblem& problem, const LobesOptions& options)
   const bool straight =
       alike && tool.lag_rad_per_m(0) == 0.0 && !milling.speed_variation.active() && !milling.process_damping.active();
   turn.in_pieces_rad = straight ? std::min(turn.period_rad, turn.arc_rad) : turn.period_rad;
-  // Which tooth cuts what another left changes with the height: slices, each with delays of its own.
-  if (tool.runout_m > 0.0 && tool.lag_rad_per_m(0) != 0.0) turn.base = 2000.0;
+  if (tool.runout_m > 0.0 && tool.lag_rad_per_m(0) != 0.0) {
+    // mesh_level's, until two levels agree.
+    const double slices = std::clamp(128.0 * std::pow(1e-6 / options.tolerance, 0.4), 8.0, 128.0);
+    turn.slice_pieces = 2.0 * slices * tool.teeth;
+    turn.delays = tool.teeth;
+  }
   return turn;
 }
 
@@ -107,14 +114,24 @@ double factor_of_modes(double modes) {
   return 1.0 + 0.25 * modes + 0.01 * modes * modes;
 }
 
-/// Of one radius by collocation. Where every mode dies out between two teeth the multipliers are those of the delay,
-/// which fade alike: the matrix is formed, up to its largest size, and beyond it the search ends unsettled.
+/// Of a period, as long as they may be.
+double pieces_of(const CostlyStructure& structure, const CostlyTurn& turn, double speed) {
+  return turn.in_pieces_rad * structure.fastest_rad_per_s / speed / longest_piece_rad;
+}
+
+/// Every mode dies out between two teeth: the multipliers are those of the delay, which fade alike.
+bool fades(const CostlyStructure& structure, const CostlyTurn& turn, double speed) {
+  return structure.least_decay_per_s * turn.period_rad / speed >= 3.0;
+}
+
+/// Of one radius by collocation. Where all fades the matrix is formed, up to its largest size, and beyond it the search
+/// ends unsettled.
 double operations_of_collocation(const CostlyStructure& structure, const CostlyTurn& turn, double speed) {
-  const double pieces = turn.in_pieces_rad * structure.fastest_rad_per_s / speed / longest_piece_rad;
-  const double faded = structure.least_decay_per_s * turn.period_rad / speed;
-  double time = turn.base * 3.0 * of_us * factor_of_modes(structure.modes) + 8.0 * of_us * pieces;
-  if (faded < 3.0) return time + 0.2 * of_us * pieces * pieces;
-  const double size = std::min(nodes_of_piece * pieces, 1200.0);
+  const double pieces = pieces_of(structure, turn, speed);
+  double time = turn.base * 3.0 * of_us * factor_of_modes(structure.modes) + 8.0 * of_us * pieces +
+                20.0 * of_us * turn.slice_pieces * turn.delays;
+  if (!fades(structure, turn, speed)) return time + 0.2 * of_us * pieces * pieces;
+  const double size = std::min(nodes_of_piece * pieces, largest_matrix);
   time += 8e-5 * of_us * size * size * size;
   return time + 600.0 * of_us * std::max(0.0, pieces - 150.0);
 }
@@ -135,15 +152,27 @@ double operations_of_limit(const CostlyStructure& structure, const CostlyTurn& t
   return 4e3 * of_us * factor_of_modes(structure.modes) + 530.0 * of_us * pieces * pieces * pieces;
 }
 
+/// Of the lanes of one evaluator, which a thread has.
 double bytes_of_lanes(const CostlyStructure& structure, const CostlyTurn& turn, const LobesOptions& options,
                       double slowest) {
-  if (in_frequency_domain(options.method)) return 1e8;
-  const double lanes = static_cast<double>(lane_count) * thread_count();
+  constexpr double lanes = lane_count;
   if (options.method != Method::collocation)
     return lanes * options.intervals * 200.0 * factor_of_modes(structure.modes);
-  const double pieces = 1.0 + turn.in_pieces_rad * structure.fastest_rad_per_s / slowest / longest_piece_rad;
-  const double matrix = std::min(nodes_of_piece * pieces, 1200.0);
-  return lanes * (2.0 * pieces * 1e4 * (1.0 + 0.1 * structure.modes) + 20.0 * matrix * matrix);
+  constexpr double bytes_of_piece = 1e4, levels = 2.0;
+  const double pieces = pieces_of(structure, turn, slowest);
+  const double held = levels * (1.0 + pieces + turn.delays * turn.slice_pieces) * bytes_of_piece;
+  // Beyond it even the roughest level's matrix is too large to be formed.
+  constexpr double most_pieces = 200.0;
+  const bool formed = fades(structure, turn, slowest) && pieces + turn.slice_pieces <= most_pieces;
+  const double size = formed ? std::min(nodes_of_piece * pieces, largest_matrix) : 0.0;
+  return lanes * (held * (1.0 + 0.1 * structure.modes) + 20.0 * size * size);
+}
+
+/// What a look takes over one without runout.
+double times_of_runout(const CostlyStructure& structure, const CostlyTurn& turn, double speed) {
+  CostlyTurn even = turn;
+  even.slice_pieces = 0.0;
+  return operations_of_collocation(structure, turn, speed) / operations_of_collocation(structure, even, speed);
 }
 
 }  // namespace
@@ -163,8 +192,13 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
     cost.operations += (at_once ? 1.0 : looks.a_speed) * look * looks.times;
   }
   const double slowest = std::ranges::min(spindle_speeds_rad_per_s);
-  cost.bytes += bytes_of_lanes(structure, turn, options, slowest);
-  constexpr double usual_hz = 1000.0, usual_rad_per_s = 4000.0 * units::rpm, usual_intervals = 40.0;
+  if (at_once) {
+    cost.bytes += 1e8;
+  } else {
+    cost.bytes_a_thread = bytes_of_lanes(structure, turn, options, slowest);
+  }
+  constexpr double usual_hz = 1000.0, usual_rad_per_s = 4000.0 * units::rpm, usual_intervals = 40.0, usual_modes = 8.0;
+  const bool sliced = turn.slice_pieces > 0.0 && options.method == Method::collocation;
   cost.dominant = dominant_of({looks.counted,
                                {.field = structure.field,
                                 .value = structure.frequency_hz,
@@ -174,6 +208,14 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
                                 .value = slowest,
                                 .unit = "rad/s",
                                 .times_usual = usual_rad_per_s / slowest},
+                               {.field = at_once ? "" : "modes",
+                                .value = structure.modes,
+                                .unit = "modes",
+                                .times_usual = factor_of_modes(structure.modes) / factor_of_modes(usual_modes)},
+                               {.field = sliced ? "runout_m" : "",
+                                .value = problem.milling.tool.runout_m,
+                                .unit = "m",
+                                .times_usual = sliced ? times_of_runout(structure, turn, slowest) : 1.0},
                                {.field = "intervals",
                                 .value = static_cast<double>(options.intervals),
                                 .times_usual = options.intervals / usual_intervals}});
@@ -181,14 +223,19 @@ Cost cost_of_looks(const LobesProblem& problem, const LobesOptions& options,
 }
 
 void add_cost_of_points(const LobesProblem& problem, const LobesOptions& options, Cost& cost) {
-  double most = cost.operations;
+  const Cost chart = cost;
+  const double most_bytes = cost_limit().bytes;
+  double most = chart.operations;
   for (const OperatingPoint& point : options.points) {
     const Cost one =
         cost_of_looks(problem, options, std::array{point.spindle_speed_rad_per_s}, {.a_speed = 2.0 * looks_a_limit});
     cost.operations += one.operations;
     cost.bytes = std::max(cost.bytes, one.bytes);
-    if (one.operations <= most) continue;
-    most = one.operations;
+    cost.bytes_a_thread = std::max(cost.bytes_a_thread, one.bytes_a_thread);
+    // What holds too much by itself is to blame; where neither does, what takes longest.
+    const bool chart_holds = chart.least_bytes() > most_bytes, point_holds = one.least_bytes() > most_bytes;
+    if (chart_holds || (one.operations <= most && !point_holds)) continue;
+    most = std::max(most, one.operations);
     cost.dominant = {
         .field = "points.spindle_speed_rad_per_s", .value = point.spindle_speed_rad_per_s, .unit = "rad/s"};
   }

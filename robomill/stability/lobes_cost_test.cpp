@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/stability/uncertainty.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::stability {
 namespace lobes_cost_test {
@@ -34,13 +37,23 @@ LobesOptions chart(double from_rpm, double to_rpm, int speeds = 120, int depths 
   return options;
 }
 
-std::string rejection(const LobesProblem& problem, const LobesOptions& options) {
-  try {
-    static_cast<void>(compute_lobes(problem, options));
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return {};
+/// Of 15 µm, a helix of 30°.
+LobesProblem with_runout(int teeth) {
+  LobesProblem problem = example();
+  problem.milling.tool.teeth = teeth;
+  problem.milling.tool.helix_rad = 30.0 * units::deg;
+  problem.milling.tool.runout_m = 15e-6;
+  return problem;
+}
+
+std::vector<double> speeds_of(const std::array<double, 2>& rpm, int count) {
+  std::vector<double> speeds;
+  for (int i = 0; i < count; ++i) speeds.push_back((rpm[0] + (rpm[1] - rpm[0]) * i / (count - 1)) * units::rpm);
+  return speeds;
+}
+
+void compute(const LobesProblem& problem, const LobesOptions& options) {
+  static_cast<void>(compute_lobes(problem, options));
 }
 
 // Source: processor time of one core of a busy machine of two cores, 2.6 GHz; README.md, "Cost".
@@ -67,51 +80,125 @@ TEST(LobesCost, IsNearWhatWasMeasured) {
   for (const Case& one : cases) {
     LobesOptions options = chart(one.rpm[0], one.rpm[1]);
     options.method = one.method;
-    std::vector<double> speeds;
-    for (int i = 0; i < one.speeds; ++i) {
-      speeds.push_back((one.rpm[0] + (one.rpm[1] - one.rpm[0]) * i / (one.speeds - 1)) * units::rpm);
-    }
     const LobesProblem problem = example(one.highest_hz == 660.0 ? 620.0 : one.highest_hz);
-    const double estimate = 1e-9 * detail::cost_of_looks(problem, options, speeds, {.a_speed = one.looks}).operations;
+    const double estimate =
+        1e-9 *
+        detail::cost_of_looks(problem, options, speeds_of(one.rpm, one.speeds), {.a_speed = one.looks}).operations;
     EXPECT_GT(estimate, one.seconds / 4.0) << one.rpm[0] << " rpm, " << one.highest_hz << " Hz";
     EXPECT_LT(estimate, one.seconds * 4.0) << one.rpm[0] << " rpm, " << one.highest_hz << " Hz";
   }
 }
 
+// Source: the same.
+TEST(LobesCost, OfRunoutWithHelixIsNearWhatWasMeasured) {
+  struct Case {
+    std::array<double, 2> rpm;
+    int teeth, speeds;
+    double tolerance, looks, seconds;
+  };
+  const Case cases[] = {
+      {{4000.0, 16000.0}, 4, 4, 1e-6, 21.5, 5.1},
+      {{4000.0, 16000.0}, 2, 4, 1e-6, 8.0, 0.73},
+      {{1000.0, 1100.0}, 4, 2, 1e-6, 24.5, 6.6},
+      {{4000.0, 16000.0}, 4, 4, 1e-4, 8.25, 0.31},
+  };
+  for (const Case& one : cases) {
+    LobesOptions options = chart(one.rpm[0], one.rpm[1]);
+    options.tolerance = one.tolerance;
+    const Cost cost =
+        detail::cost_of_looks(with_runout(one.teeth), options, speeds_of(one.rpm, one.speeds), {.a_speed = one.looks});
+    EXPECT_GT(1e-9 * cost.operations, one.seconds / 2.5) << one.teeth << " teeth, tolerance " << one.tolerance;
+    EXPECT_LT(1e-9 * cost.operations, one.seconds * 2.5) << one.teeth << " teeth, tolerance " << one.tolerance;
+  }
+}
+
+// Source: resident memory of robomill on one thread, less that of a small chart.
+TEST(LobesCost, MemoryIsThatOfAThreadHoweverManyThereAre) {
+  const auto held = [](const LobesProblem& problem, const LobesOptions& options) {
+    return detail::cost_of_looks(problem, options, std::array{options.spindle_speed_rad_per_s[0]}, {}).least_bytes();
+  };
+  const LobesProblem runout = with_runout(4);
+  EXPECT_NEAR(held(example(), chart(40, 44)), 215e6, 100e6);
+  EXPECT_NEAR(held(runout, chart(4000, 16000)), 640e6, 300e6);
+  LobesProblem slot = example(3000.0);
+  slot.milling.immersion.entry_rad = 0.0;
+  slot.milling.tool.helix_rad = 30.0 * units::deg;
+  const double before[] = {held(example(), chart(40, 44)), held(runout, chart(4000, 16000)),
+                           held(slot, chart(400, 420))};
+  set_thread_count(64);
+  EXPECT_EQ(held(example(), chart(40, 44)), before[0]);
+  EXPECT_EQ(held(runout, chart(4000, 16000)), before[1]);
+  EXPECT_EQ(held(slot, chart(400, 420)), before[2]);
+  // Where 64 threads would hold too much, fewer do it.
+  set_cost_limit({.bytes = 3.5 * held(example(), chart(4000, 16000))});
+  EXPECT_NO_THROW(compute(example(), chart(4000, 16000)));
+  set_cost_limit({.bytes = 0.5 * held(example(), chart(4000, 16000))});
+  EXPECT_THROW(compute(example(), chart(4000, 16000)), InvalidInput);
+  set_cost_limit({});
+  set_thread_count(0);
+}
+
+// The matrix of what fades alike is formed up to 1,200 entries, and not where modes outlive a tooth.
+TEST(LobesCost, MemoryOfAMatrixIsThatOfOneThatIsFormed) {
+  const auto held = [](const LobesProblem& problem, double rpm) {
+    return detail::cost_of_looks(problem, chart(rpm, 2.0 * rpm), std::array{rpm * units::rpm}, {}).least_bytes();
+  };
+  constexpr double largest_matrices = 20.0 * 1200.0 * 1200.0 * 8.0;
+  EXPECT_GT(held(example(), 40.0), 0.7 * largest_matrices);
+  EXPECT_LT(held(example(), 20.0), held(example(), 40.0));
+  LobesProblem lasting = example();
+  for (modal::Mode& mode : lasting.dynamics.modes) mode.damping_ratio = 1e-4;
+  EXPECT_LT(held(lasting, 40.0), 0.3 * largest_matrices);
+}
+
 TEST(LobesCost, OneNumberTooFarIsRejectedBeforeAnythingIsComputed) {
-  EXPECT_EQ(rejection(example(), chart(4000, 16000)), "");
-  const std::string fast = rejection(example(500e3), chart(100, 200));
+  EXPECT_NO_THROW(compute(example(), chart(4000, 16000)));
+  const std::string fast = test::rejection([] { compute(example(500e3), chart(100, 200)); });
   EXPECT_TRUE(fast.starts_with("modes[1].frequency_hz = 500000 Hz; would take about")) << fast;
   LobesOptions slow = chart(2, 4);
   slow.method = Method::multi_frequency;
-  const std::string slowly = rejection(example(), slow);
+  const std::string slowly = test::rejection([&] { compute(example(), slow); });
   EXPECT_TRUE(slowly.starts_with("spindle_speed_rad_per_s = 0.20944 rad/s; would take about")) << slowly;
   LobesOptions fine = chart(4000, 16000, 20000, 20000);
   fine.output = Output::map;
-  const std::string finely = rejection(example(), fine);
+  const std::string finely = test::rejection([&] { compute(example(), fine); });
   EXPECT_TRUE(finely.starts_with("grid = 20000; would take about")) << finely;
   EXPECT_NE(finely.find("of memory"), std::string::npos) << finely;
-  Uncertainty many = {.samples = 1'000'000};
-  try {
-    static_cast<void>(uncertain_limits(example(), chart(4000, 16000), many));
-    ADD_FAILURE() << "a million samples";
-  } catch (const InvalidInput& error) {
-    EXPECT_EQ(error.parts().field, "samples") << error.what();
-  }
+  const Uncertainty many = {.samples = 1'000'000};
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(uncertain_limits(example(), chart(4000, 16000), many)); }),
+            "samples");
+}
+
+TEST(LobesCost, NamesManyModesAndRunout) {
+  LobesProblem many = example();
+  for (int i = 0; i < 58; ++i) many.dynamics.modes.push_back(many.dynamics.modes.front());
+  EXPECT_EQ(
+      detail::cost_of_looks(many, chart(4000, 16000), speeds_of({4000, 16000}, 60), {.a_speed = 40.0}).dominant.field,
+      "modes");
+  EXPECT_EQ(test::field_of([] { compute(with_runout(4), chart(4000, 16000, 800)); }), "runout_m");
 }
 
 TEST(LobesCost, OfAPointBesideTheChartNamesThePoint) {
   LobesOptions options = chart(4000, 16000, 2, 2);
   options.method = Method::multi_frequency;
   options.points = {{.spindle_speed_rad_per_s = 2.0 * units::rpm, .axial_depth_m = 1e-3}};
-  const std::string text = rejection(example(), options);
+  const std::string text = test::rejection([&] { compute(example(), options); });
   EXPECT_TRUE(text.starts_with("points.spindle_speed_rad_per_s = 0.20944 rad/s; would take about")) << text;
 }
 
+TEST(LobesCost, OfAPointThatHoldsTooMuchNamesThePoint) {
+  LobesOptions options = chart(4000, 16000, 2000, 40);
+  options.points = {{.spindle_speed_rad_per_s = 40.0 * units::rpm, .axial_depth_m = 1e-3}};
+  set_cost_limit({.bytes = 1e8});
+  EXPECT_EQ(test::field_of([&] { compute(example(), options); }), "points.spindle_speed_rad_per_s");
+  set_cost_limit({});
+}
+
 TEST(LobesCost, NoModeVibratesAtAMegahertzAndNoSpindleStandsStill) {
+  const auto said = [](const LobesOptions& options) { return test::rejection([&] { compute(example(), options); }); };
   EXPECT_THROW(static_cast<void>(example(1.01e6)), InvalidInput);
-  EXPECT_NE(rejection(example(), chart(0.9, 16000)).find("must be at least 1 rpm"), std::string::npos);
-  EXPECT_NE(rejection(example(), chart(4000, 2e6)).find("must be at most 1,000,000 rpm"), std::string::npos);
+  EXPECT_NE(said(chart(0.9, 16000)).find("must be at least 1 rpm"), std::string::npos);
+  EXPECT_NE(said(chart(4000, 2e6)).find("must be at most 1,000,000 rpm"), std::string::npos);
 }
 
 }  // namespace lobes_cost_test

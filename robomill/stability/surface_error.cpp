@@ -275,12 +275,13 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   const double nodes = static_cast<double>(grid[0]) * grid[1];
   LobesOptions collocated = options;
   collocated.method = Method::collocation;
-  require_affordable(cost_of_looks(problem, collocated, axes.spindle_speed_rad_per_s,
-                                   {.a_speed = looks_a_surface * grid[1],
-                                    .bytes = 120.0 * nodes,
-                                    .counted = {.field = "grid",
-                                                .value = static_cast<double>(std::max(grid[0], grid[1])),
-                                                .times_usual = nodes / usual_nodes}}));
+  const ThreadLimit threads(
+      require_affordable(cost_of_looks(problem, collocated, axes.spindle_speed_rad_per_s,
+                                       {.a_speed = looks_a_surface * grid[1],
+                                        .bytes = 120.0 * nodes,
+                                        .counted = {.field = "grid",
+                                                    .value = static_cast<double>(std::max(grid[0], grid[1])),
+                                                    .times_usual = nodes / usual_nodes}})));
   const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
   const Surfaces surfaces(problem);
   Count count;

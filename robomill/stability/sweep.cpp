@@ -7,6 +7,7 @@
 
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
@@ -38,8 +39,8 @@ std::vector<StableInterval> stable_intervals(const Axes& axes, std::size_t speed
   return intervals;
 }
 
-/// Every node to the tolerance, and each point with its gain margin.
-void require_affordable_sweep(const LobesProblem& problem, const SweepOptions& options, const Axes& axes) {
+/// Every node to the tolerance, and each point with its gain margin: the threads that may do it.
+int require_affordable_sweep(const LobesProblem& problem, const SweepOptions& options, const Axes& axes) {
   constexpr double usual_nodes = 2400.0;
   const double depths = options.grid[1], nodes = options.grid[0] * depths;
   const double larger = std::max(options.grid[0], options.grid[1]);
@@ -49,7 +50,7 @@ void require_affordable_sweep(const LobesProblem& problem, const SweepOptions& o
                              .bytes = 60.0 * nodes,
                              .counted = {.field = "grid", .value = larger, .times_usual = nodes / usual_nodes}});
   add_cost_of_points(problem, as_chart, cost);
-  require_affordable(cost);
+  return require_affordable(cost);
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& optio
     throw InvalidInput("parameter", "must not be the step-over of a slot, which has no neighbour");
   }
   const Axes axes = {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.range, options.grid[1])};
-  require_affordable_sweep(problem, options, axes);
+  const ThreadLimit threads(require_affordable_sweep(problem, options, axes));
   const std::unique_ptr<Scheme> scheme = sweep_collocation(problem, options.parameter, options.tolerance);
   scheme->expect(axes.axial_depth_m);
   SweepResult result;

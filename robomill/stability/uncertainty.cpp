@@ -30,6 +30,7 @@ void require_ratio(const char* field, double ratio, double most) {
 /// Drawn values stay on their own side of zero: a tenth of the value at least.
 double drawn(Random& random, double value, double deviation) {
   const double sample = value + deviation * random.normal();
+  if (value < 0.0) return std::min(sample, 0.1 * value);
   return value > 0.0 ? std::max(sample, 0.1 * value) : sample;
 }
 
@@ -109,8 +110,16 @@ void Uncertainty::validate() const {
 
 namespace {
 
-void require_affordable_samples(const LobesProblem& problem, const LobesOptions& options,
-                                const Uncertainty& uncertainty, const std::vector<double>& speeds) {
+Axes axes_of(const LobesOptions& options, const Uncertainty& uncertainty) {
+  LobesOptions chart = options;
+  chart.grid = uncertainty.grid;
+  return column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
+}
+
+}  // namespace
+
+Cost cost_of_uncertain_limits(const LobesProblem& problem, const LobesOptions& options,
+                              const Uncertainty& uncertainty) {
   constexpr double usual_samples = 200.0, usual_speeds = 100.0, usual_depths = 100.0;
   const double samples = uncertainty.samples, columns = uncertainty.grid[0], depths = uncertainty.grid[1];
   const CostDriver counted =
@@ -118,14 +127,12 @@ void require_affordable_samples(const LobesProblem& problem, const LobesOptions&
                    {.field = "grid",
                     .value = std::max(columns, depths),
                     .times_usual = std::max(columns / usual_speeds, columns * depths / usual_speeds / usual_depths)}});
-  require_affordable(cost_of_looks(problem, options, speeds,
-                                   {.a_speed = looks_a_limit,
-                                    .times = samples,
-                                    .bytes = 8.0 * samples * columns + 60.0 * columns * depths,
-                                    .counted = counted}));
+  return cost_of_looks(problem, options, axes_of(options, uncertainty).spindle_speed_rad_per_s,
+                       {.a_speed = looks_a_limit,
+                        .times = samples,
+                        .bytes = 8.0 * samples * columns + 60.0 * columns * depths,
+                        .counted = counted});
 }
-
-}  // namespace
 
 UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions& options,
                                  const Uncertainty& uncertainty, Progress& progress) {
@@ -133,10 +140,8 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
   problem.validate();
   options.validate();
   uncertainty.validate();
-  LobesOptions chart = options;
-  chart.grid = uncertainty.grid;
-  const Axes axes = column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
-  require_affordable_samples(problem, options, uncertainty, axes.spindle_speed_rad_per_s);
+  const Axes axes = axes_of(options, uncertainty);
+  const ThreadLimit threads(require_affordable(cost_of_uncertain_limits(problem, options, uncertainty)));
   const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
   const std::size_t count = static_cast<std::size_t>(uncertainty.samples);
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -157,10 +162,10 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
 
   UncertainLimits result;
   const Eigen::Index n = static_cast<Eigen::Index>(speeds);
-  const Eigen::Index m = chart.grid[1];
+  const Eigen::Index m = uncertainty.grid[1];
   result.samples = uncertainty.samples;
   result.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), n);
-  result.axial_depth_m = to_eigen(even(chart.axial_depth_m, chart.grid[1]));
+  result.axial_depth_m = to_eigen(even(options.axial_depth_m, uncertainty.grid[1]));
   result.limit_5_percent_m.resize(n);
   result.limit_50_percent_m.resize(n);
   result.limit_95_percent_m.resize(n);

@@ -13,7 +13,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/toml_file.hpp"
 
@@ -244,7 +243,6 @@ CoefficientTable read_unscaled(io::TomlFile& file, const CutAtHand& cut) {
     if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, k.*field.values)) continue;
     (field.edge ? edge : cutting) = field.key;
   }
-  if (k.radial_n_per_m2.size() == 1) file.locate([&] { require_pushing_radial(k.radial_n_per_m2.front()); });
   const bool measured = read_edge_measure(file, k);
   if (file.text("coefficients.material", name)) {
     if (cutting != nullptr) {

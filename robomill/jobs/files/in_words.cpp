@@ -1,5 +1,7 @@
 #include "robomill/jobs/files/in_words.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 #include "robomill/base/units.hpp"
@@ -7,17 +9,29 @@
 
 namespace robomill::jobs {
 
+InvalidInput in_unit(const InvalidInput& error, double factor, std::string unit) {
+  InvalidInput::Parts parts = error.parts();
+  if (parts.number) *parts.number /= factor;
+  parts.unit = std::move(unit);
+  return InvalidInput(std::move(parts));
+}
+
 InvalidInput in_words_of(const LobesFile& cut, const InvalidInput& error) {
   InvalidInput::Parts parts = error.parts();
   if (!parts.where.empty()) return error;
   if (parts.field.starts_with("points.")) {
-    const bool speed = parts.unit == "rad/s", depth = parts.unit == "m";
     parts.field = "--at";
-    if (parts.number && speed) parts.number = *parts.number / units::rpm;
-    if (parts.number && depth) parts.number = *parts.number / units::mm;
-    if (speed || depth) parts.unit = speed ? "rpm" : "mm";
+    const InvalidInput of_point{std::move(parts)};
+    if (of_point.parts().unit == "rad/s") return in_unit(of_point, units::rpm, "rpm");
+    return of_point.parts().unit == "m" ? in_unit(of_point, units::mm, "mm") : of_point;
+  }
+  if (parts.field.starts_with("options.")) {
+    parts.field = "--" + parts.field.substr(parts.field.find('.') + 1);
+    std::ranges::replace(parts.field, '_', '-');
     return InvalidInput(std::move(parts));
   }
+  // Another structure stands in the place of the file's: its modes have the same names.
+  if (cut.dropped_dynamics && parts.field.starts_with("modes[")) return within("fitted ", error);
   if (cut.document) {
     InvalidInput located = cut.document->located(error);
     if (!located.parts().where.empty()) return located;

@@ -14,7 +14,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/cutting/polynomial.hpp"
@@ -218,10 +217,7 @@ void read_coefficients_of(io::TomlFile& file, LobesFile& out, cutting::Coefficie
   file.number("coefficients.tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
               k.tangential_edge_n_per_m);
   file.number("coefficients.radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, k.radial_edge_n_per_m);
-  file.locate([&] {
-    k.validate();
-    cutting::require_pushing_radial(k.radial_n_per_m2);
-  });
+  file.locate([&] { k.validate(); });
 }
 
 /// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
@@ -418,6 +414,7 @@ stability::SweepOptions sweep_options(const LobesFile& file) {
 }
 
 void LobesFile::drop_dynamics() {
+  dropped_dynamics = true;
   modes.clear();
   frf.clear();
   cell.clear();

@@ -69,12 +69,12 @@ struct Rights {
   void give_up_the_rest() const {
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
+    CostLimit limit = {.way_out = "run it on the command line with --allow-large"};
     if (memory_bytes > 0) {
       io::limit_own_memory(memory_bytes);
-      CostLimit limit;
       limit.bytes = std::min(limit.bytes, static_cast<double>(memory_bytes));
-      set_cost_limit(limit);
     }
+    set_cost_limit(limit);
     set_thread_count(threads);
     static_cast<void>(io::restrict_files(file_rights_of_worker(root, connects)));  // else its Confinement remains
   }
