@@ -17,11 +17,11 @@
 #include <thread>
 #include <vector>
 
-#include "monitor/test_processes.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/io/sandbox.hpp"
 #include "robomill/io/sanitized.hpp"
 #include "test_program.hpp"
+#include "testing/processes.hpp"
 #include "testing/serve/http_client.hpp"
 #include "testing/serve/slot.hpp"
 

@@ -30,8 +30,8 @@
 #include <thread>
 #include <utility>
 
-#include "app/monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
+#include "testing/processes.hpp"
 
 namespace {
 

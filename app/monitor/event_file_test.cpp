@@ -14,7 +14,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/version.hpp"
-#include "test_processes.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::app {

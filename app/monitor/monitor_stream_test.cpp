@@ -23,9 +23,9 @@
 #include "monitor/http_get.hpp"
 #include "monitor/mqtt.hpp"
 #include "monitor/test_monitor.hpp"
-#include "monitor/test_processes.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
+#include "testing/processes.hpp"
 
 namespace robomill::app {
 namespace monitor_stream_test {

@@ -9,7 +9,7 @@
 #include "http_get.hpp"
 #include "metrics_server.hpp"
 #include "robomill/base/error.hpp"
-#include "test_processes.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 #include "watch.hpp"
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "app/monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
+#include "testing/processes.hpp"
 
 namespace robomill::faults {
 namespace {

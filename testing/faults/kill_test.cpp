@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "app/monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/io/append_log.hpp"
 #include "testing/faults/judge.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::faults {

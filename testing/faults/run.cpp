@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/monitor/test_processes.hpp"
+#include "testing/processes.hpp"
 
 namespace robomill::faults {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <thread>
 
-#include "app/monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
 #include "testing/faults/run.hpp"
+#include "testing/processes.hpp"
 #include "testing/serve/http_client.hpp"
 #include "testing/support.hpp"
 
