@@ -177,7 +177,7 @@ Found found_in(const fs::path& events) {
     if (what == "events-not-saved") ++out.not_saved;
     if (what == "events-saved") ++out.saved;
     if (what == "recording-failed") ++out.recordings_failed;
-    if (what == "connection-lost") ++out.connections_lost;
+    if (what == "broker-lost") ++out.connections_lost;
     if (kind != "state") continue;
     const std::string now = event.at("state"), why = event.at("reason").is_null() ? "" : event.at("reason");
     if (now == "chatter" && state != "chatter") {
@@ -211,8 +211,9 @@ bool demand(bool so, const std::string& what) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int seconds = static_cast<int>(3600.0 * (argc > 1 ? std::atof(argv[1]) : 24.0));
-  const int cycles = seconds / cycle_s;
+  const double hours = argc > 1 ? std::atof(argv[1]) : 24.0;
+  const int cycles = std::max(1, static_cast<int>(std::lround(3600.0 * hours / cycle_s)));
+  const int seconds = cycles * cycle_s;
   const fs::path folder = fs::temp_directory_path() / fmt::format("robomill_live_soak_{}", ::getpid());
   fs::create_directories(folder);
   std::signal(SIGPIPE, SIG_IGN);
@@ -266,7 +267,7 @@ int main(int argc, char** argv) {
   const int exit = monitor.wait();
   const Found found = found_in(events);
   fmt::print(
-      "{} lines of events, {} recordings ({} failed), broker killed {} times ({} times lost as the events say), disk "
+      "{} lines of events, {} recordings ({} failed), broker killed {} times ({} times as the events say), disk "
       "full {} times (not saved {}, saved again {})\n",
       found.lines, found.recordings, found.recordings_failed, broker_faults, found.connections_lost, disk_faults,
       found.not_saved, found.saved);
