@@ -1,5 +1,6 @@
 #include "robomill/jobs/explain.hpp"
 
+#include "point.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/pages.hpp"
@@ -18,7 +19,7 @@ void check(const ExplainCommand& command) {
   for (const double f : command.peaks_hz) {
     if (!(f > 0.0 && f <= 1e6)) throw reject("--peaks", f, "Hz", "must lie between 0 and 1 MHz");
   }
-  if (!(command.rpm > 0.0 && command.rpm <= 1e6)) throw reject("--rpm", command.rpm, "rpm", "must be > 0");
+  static_cast<void>(spindle_speed("--rpm", command.rpm));
   if (!(command.tolerance_hz > 0.0 && command.tolerance_hz < 0.25 * command.rpm / 60.0)) {
     throw reject("--tolerance-hz", command.tolerance_hz, "Hz",
                  "must be > 0 and below a quarter of the rotation frequency",
@@ -34,6 +35,7 @@ void check(const ExplainCommand& command) {
   if (!command.at.empty() && !(command.at[0] > 0.0 && command.at[1] >= 0.0)) {
     throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
   }
+  if (!command.at.empty()) static_cast<void>(spindle_speed("--at", command.at[0]));
 }
 
 }  // namespace

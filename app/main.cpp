@@ -1,19 +1,25 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "help.hpp"
 #include "options.hpp"
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
@@ -36,6 +42,7 @@ CLI::IsMember one_of_words(const Name<Value> (&names)[n]) {
 struct CommandLine {
   CLI::App parser{"robomill keeps a milling robot out of chatter: hammer hits to safe cutting conditions.", "robomill"};
   Common common;
+  bool allow_large = false;  ///< work that takes long or much memory is not rejected before it begins
   InitCommand init;
   FrfCommand frf;
   ModesCommand modes;
@@ -56,6 +63,11 @@ struct CommandLine {
   std::function<Exit(Progress&)> chosen;
 
   CommandLine();
+  /// Where the verb writes, in whatever option that stands.
+  [[nodiscard]] std::vector<std::filesystem::path> outputs() const {
+    return {common.to_stdout() ? std::string() : common.output, common.report, couple.holder_out, couple.frfs,
+            monitor.record};
+  }
   void add_first_verbs();
   void add_structure_verbs();
   void add_cut_verbs();
@@ -75,6 +87,8 @@ CLI::App* CommandLine::verb(const char* name, const char* description, std::func
   sub->add_flag("--quiet", common.quiet, "no summary and no progress");
   sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(whole_number(1));
   sub->add_option("--seed", common.seed, "seed of every random number (default: 1)")->check(unsigned_number());
+  sub->add_flag("--allow-large", allow_large,
+                "do what takes more than 10 minutes of one core or 2 GB, instead of rejecting it before it begins");
   sub->callback([this, run = std::move(run)] { chosen = run; });
   return sub;
 }
@@ -302,18 +316,31 @@ void CommandLine::add_machine_verbs() {
   add_posture(sub, plan.posture_deg);
 
   sub = verb("serve", "the page of a folder, over HTTP", [this](Progress& p) { return run(serve, common, p); });
-  sub->remove_option(sub->get_option("--report"));
+  for (const char* const option : {"--report", "--allow-large"}) sub->remove_option(sub->get_option(option));
   serve::ServeOptions& options = serve.options;
   sub->add_option("folder", options.folder, "what is served, and nothing outside it (default: the current folder)");
   sub->add_option("--port", options.port, "to listen at; 0: any that is free (default: 8437)")
       ->check(whole_number(0, 65535));
-  sub->add_option("--host", options.host, "address to listen at (default: 127.0.0.1); another machine's needs --token");
-  sub->add_option("--token", options.token, "that whoever asks must know: 16 or more letters and digits");
+  sub->add_option(
+      "--host", options.host,
+      "address to listen at, or localhost (default: 127.0.0.1); one that other machines reach needs a token");
+  CLI::Option* const token = sub->add_option(
+      "--token", options.token,
+      "that whoever asks must know: 16 or more letters and digits; other users of this machine see it in ps");
+  sub->add_option("--token-file", serve.token_file, "a file that has the token alone")->excludes(token);
+  sub->add_option("--job-memory-mb", serve.job_memory_mb, "that a job may have (default: half the machine's)")
+      ->check(whole_number(100, 100'000'000));
 }
 
 int report_error(const char* text, int exit) {
   std::fprintf(stderr, "robomill: %s\n", printable(text).c_str());
   return exit;
+}
+
+/// By errno.
+int report_unwritten() {
+  const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+  return report_error(("standard output cannot be written" + why).c_str(), bad_input);
 }
 
 /// Help to standard output, or what is wrong with the arguments, whose bytes may be anybody's.
@@ -334,7 +361,9 @@ int run_chosen(int argc, char** argv) {
   }
   try {
     require_report_place(line.common.report);
+    const io::OutputPlaces outputs(line.outputs());
     set_thread_count(line.common.threads);
+    set_cost_limit(line.allow_large ? no_cost_limit : CostLimit{.way_out = "--allow-large takes it"});
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());
   } catch (const InvalidInput& error) {
@@ -343,9 +372,21 @@ int run_chosen(int argc, char** argv) {
     return report_error("interrupted", exit_of_signal());
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for this input", bad_input);
+  } catch (const std::system_error& error) {
+    errno = error.code().value();
+    return std::ferror(stdout) != 0 ? report_unwritten() : report_error(error.what(), bad_input);
   } catch (const std::exception& error) {
     return report_error(error.what(), bad_input);
   }
+}
+
+/// Closes standard output, where a full disk behind a redirection shows at the latest.
+int end_with(int exit) {
+  const bool said = exit != done && exit != not_reached;
+  errno = 0;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return said ? exit : report_unwritten();
+  // One that was closed before took nothing; all was flushed where a signal interrupts closing.
+  return std::fclose(stdout) == 0 || errno == EBADF || errno == EINTR || said ? exit : report_unwritten();
 }
 
 }  // namespace
@@ -353,7 +394,9 @@ int run_chosen(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return robomill::app::run_chosen(argc, argv);
+    // No verb: nobody but `robomill serve` starts it.
+    if (argc == 2 && robomill::app::serve_worker == argv[1]) return robomill::app::work_for_server();
+    return robomill::app::end_with(robomill::app::run_chosen(argc, argv));
   } catch (...) {
     // Thrown before there is a verb to blame, or by the report of another error.
     std::fputs("robomill: cannot run\n", stderr);

@@ -5,6 +5,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 
 namespace robomill::app {
 
@@ -20,7 +22,16 @@ stability::OperatingPoint parse_point(const std::string& text) {
   if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw reject();
   const std::from_chars_result second = std::from_chars(first.ptr + 1, end, mm);
   if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !std::isfinite(mm)) throw reject();
-  return {.spindle_speed_rad_per_s = rpm * units::rpm, .axial_depth_m = mm * units::mm};
+  return {.spindle_speed_rad_per_s = spindle_speed("--at", rpm), .axial_depth_m = mm * units::mm};
+}
+
+double spindle_speed(const char* option, double rpm) {
+  try {
+    cutting::require_spindle_speed(option, rpm * units::rpm);
+  } catch (const InvalidInput& error) {
+    throw jobs::in_unit(error, units::rpm, "rpm");
+  }
+  return rpm * units::rpm;
 }
 
 }  // namespace robomill::app

@@ -109,12 +109,12 @@ TEST_F(Signals, EndEveryVerbWhereItCounts) {
   write("modes.toml", "[fit]\nmethod = \"pso\"\nmodes = 5\npso_particles = 30000\npso_max_iterations = 100000\n");
   const std::vector<std::string> verbs = {
       "lobes lobes.toml -o result.json",
-      "simulate lobes.toml --at 7000,1 --seconds 3600 -o result.csv",
+      "simulate lobes.toml --at 7000,1 --seconds 3600 --allow-large -o result.csv",
       "smooth slow.ngc --cell cell.toml -o result.csv",
       "forces forces.toml --program '" ROBOMILL_SOURCE_DIR
       "/examples/force-along-program/hollow.ngc' --cell '" ROBOMILL_SOURCE_DIR
       "/examples/force-along-program/cell.toml' -o result.csv",
-      "modes frf.csv --config modes.toml -o result.json",
+      "modes frf.csv --config modes.toml --allow-large -o result.json",
   };
   std::size_t next = 0;
   for (const std::string& verb : verbs) {
@@ -144,6 +144,19 @@ TEST_F(Signals, TemporaryFilesGo) {
       }
     }
   }
+}
+
+// As `| head` does: whoever reads the summary goes.
+TEST_F(Signals, ABrokenPipeLeavesNothingBehind) {
+  write("monitor.toml", "[signal]\nsample_rate_hz = 1000\nchannels = [1]\n");
+  std::string rows;
+  for (int i = 0; i < 200'000; ++i) rows += i % 4000 < 2000 ? "0\n" : std::to_string(i * 7919 % 101) + "\n";
+  write("rec.csv", rows);  // a signal that comes and goes: an event each time, and a line of it
+  const Ended run = shell("{ env --default-signal=PIPE '" ROBOMILL_PROGRAM
+                          "' monitor monitor.toml --input rec.csv -o result.jsonl; echo $? >exit.txt; } | true");
+  EXPECT_EQ(slurp(folder_.at("exit.txt")), "141\n") << run.err;
+  EXPECT_EQ(names(".result"), std::vector<std::string>());
+  EXPECT_EQ(names("result"), std::vector<std::string>());
 }
 
 // As after nohup, or in the background of a script.

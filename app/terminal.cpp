@@ -61,6 +61,15 @@ extern "C" void on_signal(int number) {
   errno = error;
 }
 
+/// Who read standard output has seen enough: the process ends as it would have, but leaves nothing half-written.
+extern "C" void on_broken_pipe(int number) {
+  io::remove_pending_files();
+  struct sigaction action = {};
+  action.sa_handler = SIG_DFL;
+  ::sigaction(number, &action, nullptr);
+  ::raise(number);  // once this returns
+}
+
 void set_handler(int number, void (*handler)(int)) {
   struct sigaction old = {};
   // What the caller ignores stays ignored: nohup, a shell's background.
@@ -90,6 +99,8 @@ const std::atomic<bool>& stop_on_signal() {
     ::pthread_sigmask(SIG_UNBLOCK, &alarm, nullptr);
     has_patience = ::timer_create(CLOCK_MONOTONIC, &event, &patience) == 0;
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) set_handler(number, on_signal);
+    set_handler(SIGPIPE, on_broken_pipe);
+    set_handler(SIGXFSZ, SIG_IGN);  // a write beyond the limit of files' sizes fails, as on a full disk
     return true;
   }();
   static_cast<void>(set);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "monitor/test_processes.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::app {

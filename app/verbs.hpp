@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -135,7 +136,13 @@ struct PlanCommand {
 };
 struct ServeCommand {
   serve::ServeOptions options;
+  int job_memory_mb = 0;             ///< 0: half the machine's
+  std::filesystem::path token_file;  ///< options.token stands in it; empty: in no file
 };
+/// What this program is asked for where it is to work for a server that it is too (ServeOptions::worker).
+inline constexpr std::string_view serve_worker = "serve-worker";
+/// The program's exit code.
+[[nodiscard]] int work_for_server();
 
 Exit run(const InitCommand& command, const Common& common, Progress& progress);
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);

@@ -20,6 +20,7 @@ if(ROBOMILL_APP)
 endif()
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(matio REQUIRED IMPORTED_TARGET matio)
+pkg_check_modules(zlib REQUIRED IMPORTED_TARGET zlib)
 pkg_check_modules(sndfile REQUIRED IMPORTED_TARGET sndfile)
 pkg_check_modules(kdl REQUIRED IMPORTED_TARGET orocos-kdl)
 pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom tinyxml)  # tinyxml is what urdfdom reads XML with

@@ -1,6 +1,7 @@
 #pragma once
 /// Every public header.
 #include "robomill/base/assumption.hpp"
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
@@ -82,9 +83,11 @@
 #include "robomill/live/hop_queue.hpp"
 #include "robomill/live/inputs.hpp"
 #include "robomill/live/intake.hpp"
+#include "robomill/live/load.hpp"
 #include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/live/path_actuator.hpp"
+#include "robomill/live/published_state.hpp"
 #include "robomill/live/recorded_run.hpp"
 #include "robomill/live/recorder.hpp"
 #include "robomill/live/session.hpp"

@@ -1,11 +1,15 @@
 #pragma once
 // What the tests of every stage share.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -34,6 +38,11 @@ class Folder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return path_ / name; }
+  /// Of files and folders in it.
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+  }
   /// Writes a file and returns its path.
   std::filesystem::path file(const std::string& name, std::string_view content) const {
     std::ofstream(at(name), std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
@@ -42,6 +51,26 @@ class Folder {
 
  private:
   std::filesystem::path path_;
+};
+
+/// Files of this process can grow to so many bytes while it lives: a write beyond fails, as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
 };
 
 /// What the InvalidInput that f throws says; fails the test where it throws none.

@@ -1,7 +1,7 @@
 // node serve_soak.mjs PROGRAM [--minutes N] [--speed X] [--spindles N] [--chromium PATH]
 // Monitors a recording of N minutes (480) at X times its speed (50) in the application, by so many spindles (1), and says how memory of server and page goes. Exit 1
 // where either grows by more than 10 MB between the second tenth of the run and its last, or where a spindle does not come to the end of the recording with an alarm.
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { chromiumPath, numberArgument, run } from './arguments.mjs';
@@ -14,9 +14,11 @@ const recording = 'soak-cut.wav';
 const growth_mb = 10;
 const lines = 24; // that are printed
 
-/** Resident memory of a process, without what it maps of files (MB). */
+/** Resident memory of a process and those that it started, without what they map of files (MB). */
 function resident(pid) {
-  return Number(/RssAnon:\s+(\d+) kB/.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1024;
+  const own = Number(/RssAnon:\s+(\d+) kB/.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1024;
+  const started = readdirSync(`/proc/${pid}/task`).flatMap((thread) => readFileSync(`/proc/${pid}/task/${thread}/children`, 'utf8').split(' ').filter(Boolean));
+  return started.reduce((sum, child) => sum + resident(child), own);
 }
 
 /** What the page's script holds after a collection, and its count of elements. */

@@ -17,8 +17,8 @@
 #include "mqtt.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/session.hpp"
-#include "test_processes.hpp"
 #include "testing/monitor/signal.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::app {

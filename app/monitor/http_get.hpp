@@ -11,7 +11,9 @@
 namespace robomill::test {
 
 /// The whole answer of a server on loopback; empty where there is none.
-inline std::string http_get(int port, const std::string& path) {
+/// @param host  that is asked for; empty: localhost at the port
+inline std::string http_get(int port, const std::string& path, std::string host = {}) {
+  if (host.empty()) host = "localhost:" + std::to_string(port);
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address = {};
   address.sin_family = AF_INET;
@@ -19,7 +21,7 @@ inline std::string http_get(int port, const std::string& path) {
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   std::string answer;
   if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
-    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+    const std::string request = "GET " + path + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n\r\n";
     if (::send(descriptor, request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size())) {
       std::array<char, 4096> bytes = {};
       for (ssize_t count = 0; (count = ::recv(descriptor, bytes.data(), bytes.size(), 0)) > 0;) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "robomill/base/error.hpp"
+#include "robomill/serve/guard.hpp"
 
 namespace robomill::app {
 namespace {
@@ -38,12 +39,22 @@ MetricsServer::MetricsServer(const live::MetricValues& values, const std::string
   server.set_keep_alive_timeout(longest_silence_s);
   // Who asks every few seconds need not hold a thread in between.
   server.set_keep_alive_max_count(1);
+  const std::string address = serve::host_address(host);
+  // A name that was made to point here must not let a page of its own read them.
+  server.set_pre_routing_handler([this, address](const httplib::Request& request, httplib::Response& response) {
+    using Answer = httplib::Server::HandlerResponse;
+    if (serve::is_own_host(request.get_header_value("Host"), address, port_)) return Answer::Unhandled;
+    response.status = 403;
+    response.set_content("this is not the host that is asked for\n", "text/plain");
+    return Answer::Handled;
+  });
   server.Get("/metrics", [&values](const httplib::Request&, httplib::Response& response) {
     response.set_content(values.text(), "text/plain; version=0.0.4");
   });
-  port_ = port == 0 ? server.bind_to_any_port(host) : (server.bind_to_port(host, port) ? port : -1);
+  port_ = port == 0 ? server.bind_to_any_port(address) : (server.bind_to_port(address, port) ? port : -1);
   if (port_ <= 0) {
-    throw InvalidInput("metrics", fmt::format("cannot listen at {}:{}", host, port), "Is the port taken?");
+    throw InvalidInput("metrics", fmt::format("cannot listen at {}:{}", host, port),
+                       "Is the port taken? The host must be an address of this machine, as 127.0.0.1");
   }
   parts_->thread = std::jthread([&server] { server.listen_after_bind(); });
   // stop() before listen_after_bind has begun would be forgotten.

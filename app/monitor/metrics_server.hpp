@@ -7,7 +7,7 @@
 namespace robomill::app {
 
 /// Answers GET /metrics, of up to 32 connections at a time and once each. One that asks nothing is closed after a
-/// second.
+/// second; one that asks for another host (serve::is_own_host) is rejected.
 class MetricsServer {
  public:
   /// @param host  address to listen at; loopback unless others are to see it

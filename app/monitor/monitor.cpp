@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,13 +17,13 @@
 #include <vector>
 
 #include "monitor/broker.hpp"
+#include "monitor/event_file.hpp"
 #include "monitor/metrics_server.hpp"
 #include "monitor/report.hpp"
 #include "monitor/watch.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/inputs.hpp"
@@ -43,33 +42,6 @@ constexpr double saving_s = 10.0;
 using io::RawFormat;
 using monitor::MonitorEvent;
 
-/// Lines of events: of a recording the file appears whole at the end, of a stream line by line as they come.
-class EventFile {
- public:
-  EventFile(const Common& common, bool live) : to_stdout_(common.to_stdout()) {
-    if (!common.output.empty() && !to_stdout_) file_.emplace(common.output, live);
-  }
-
-  bool write(const std::string& line) {
-    if (to_stdout_) {
-      if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0) return true;
-      failed_ = errno != EPIPE;  // a reader that has seen enough is none of our trouble
-      return false;
-    }
-    return !file_ || file_->write(line);
-  }
-
-  /// @throws InvalidInput if something could not be written
-  void close() {
-    if (failed_) throw InvalidInput("standard output", "could not be written", "Is the disk full?");
-    if (file_) file_->close();
-  }
-
- private:
-  bool to_stdout_, failed_ = false;
-  std::optional<io::LineFile> file_;
-};
-
 RawFormat raw_format(const std::string& name) {
   if (name == "f32") return RawFormat::float32;
   if (name == "i16") return RawFormat::int16;
@@ -79,7 +51,6 @@ RawFormat raw_format(const std::string& name) {
 /// The monitor's input.
 struct Input {
   bool is_stream = false;  ///< from the broker
-  bool is_live = false;    ///< events are wanted as they come
   bool by_clock = false;   ///< its samples come while they are taken: where none come, something is wrong
   bool can_wait = true;
   std::string name;
@@ -97,7 +68,7 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
   input.is_stream =
       command.input.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(command.input, file.mqtt);
   if (input.is_stream) {
-    input.is_live = input.by_clock = true;
+    input.by_clock = true;
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
     if (file.options.sample_rate_hz <= 0.0) {
       throw InvalidInput(InvalidInput::Parts{
@@ -112,13 +83,12 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
   const RawFormat format = raw_format(command.format);
   if (command.input == "-") {
     input.name = "standard input";
-    input.is_live = true;
     input.by_clock = !is_file(STDIN_FILENO);
     input.can_wait = !command.live;
     input.source = io::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
   } else {
     input.name = command.input;
-    input.is_live = input.by_clock = std::filesystem::is_fifo(command.input);
+    input.by_clock = std::filesystem::is_fifo(command.input);
     input.source = io::open_samples(command.input, file.columns, format, &ended);
   }
   if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = input.source->sample_rate_hz();
@@ -224,8 +194,12 @@ std::string blind_summary(const live::MetricValues& m) {
 /// Where what a session finds goes: lines of events, what the terminal shows, the broker, the report.
 class Outlets {
  public:
-  Outlets(const MonitorCommand& command, const Common& common, const monitor::MonitorFile& file, bool is_live)
-      : common_(&common), events_(common, is_live) {
+  Outlets(const MonitorCommand& command, const Common& common, const monitor::MonitorFile& file, const Input& input)
+      : common_(&common),
+        events_({.place = common.output,
+                 .is_stream = input.by_clock,
+                 .input = input.name,
+                 .config = command.config.string()}) {
     if (!common.report.empty()) {
       const std::vector<std::string>& channels = file.columns.channels;
       recorder_.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
@@ -243,6 +217,8 @@ class Outlets {
       take(decision, time_s, compute_s);
     };
     out.advise = [&advisor](MonitorEvent& event) { advisor.advise(event); };
+    out.idle = [this] { events_.retry(); };
+    out.overloaded = [this](const MonitorEvent& event, const std::string& line) { take_beside(event, line); };
     if (commands) {
       out.command = [this](const live::Command& issued) {
         if (broker_) broker_->publish(issued);
@@ -250,18 +226,23 @@ class Outlets {
     }
     if (recorder_) {
       out.samples = [this](std::span<const float> samples) { recorder_->add(samples); };
-      out.skipped = [this](std::uint64_t frames) { recorder_->skip(frames); };
+      out.skipped = [this](std::uint64_t frames, monitor::BlindReason why) { recorder_->skip(frames, why); };
       out.silent = [this](double seconds) { recorder_->silent(seconds); };
     }
     return out;
   }
 
+  void report_to(live::Session& session) { events_.report_to(session.notices(), session.metrics()); }
   void send_by(Broker& broker) { broker_ = &broker; }
+  /// All that the session needs is there.
+  void begin() { events_.begin(); }
   /// @throws InvalidInput if an event could not be written
   void close() {
     watch_.reset();
     events_.close();
   }
+  /// What else there is to say has been said. @throws InvalidInput if events of a stream still wait
+  void require_saved() { events_.require_saved(); }
   /// Null without a report.
   live::Recorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
 
@@ -269,13 +250,32 @@ class Outlets {
   bool take(const MonitorEvent& event, const std::string& line) {
     if (recorder_ && event.kind != MonitorEvent::Kind::window) recorder_->add(event);
     if (broker_) broker_->publish(event, line);
+    if (event.kind == MonitorEvent::Kind::state) say_load(event.decision);
     const bool news = common_->wants_summary() || (!common_->quiet && event.kind == MonitorEvent::Kind::stream);
     if (news && !watch_) print_event(common_->wants_summary() ? stdout : stderr, event);
     // That no samples come is no decision.
     if (watch_ && event.decision.state == monitor::State::blind) watch_->show(event.decision, event.time_s);
-    return events_.write(line);
+    return events_.write(line, event.kind == MonitorEvent::Kind::window);
+  }
+  /// Of another thread, while the session's hangs: perhaps in front of a terminal that was stopped, which comes last.
+  void take_beside(const MonitorEvent& event, const std::string& line) {
+    if (broker_) broker_->publish(event, line);
+    events_.write_beside(line);
+    say_load(event.decision);
+  }
+  /// To standard error, whatever else is shown there: a monitor that is late must not look quiet.
+  void say_load(const monitor::Decision& decision) {
+    if (decision.state == monitor::State::chatter) return;  // an alarm, late or not
+    const bool overloaded =
+        decision.state == monitor::State::blind && decision.reason == monitor::BlindReason::overloaded;
+    if (overloaded_.exchange(overloaded) == overloaded) return;
+    std::fputs(overloaded ? "robomill: decisions are more than a second behind the samples, or samples were left out: "
+                            "blind (overloaded)\n"
+                          : "robomill: decisions keep up with the samples again\n",
+               stderr);
   }
   void take(const monitor::Decision& decision, double time_s, double compute_s) {
+    events_.retry();
     if (recorder_) {
       monitor::Decision placed = decision;
       placed.time_s = time_s;
@@ -289,6 +289,7 @@ class Outlets {
   std::optional<live::Recorder> recorder_;
   std::optional<Watch> watch_;
   Broker* broker_ = nullptr;
+  std::atomic<bool> overloaded_{false};  ///< as it was said last
 };
 
 /// The broker that the file or the command line names, once it answers; a recording waits for it a little.
@@ -319,10 +320,11 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     fmt::print(stderr, "{}{}\n", io::warning_label, printable(warning));
   }
   const live::Advisor advisor(basis);
-  Outlets outlets(command, common, file, input.is_live);
+  Outlets outlets(command, common, file, input);
   live::Session session(file,
                         {.every_window = command.every_window, .seconds = command.seconds, .live = input.by_clock},
                         outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
+  outlets.report_to(session);
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {
     metrics.emplace(session.metrics(), file.metrics_host, file.metrics_port);
@@ -332,6 +334,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   {
     std::optional<Broker> broker;
     connect(input, file, session, stop, outlets, broker);
+    outlets.begin();
     std::optional<live::SourceInput> reader;
     if (input.source) {
       reader.emplace(std::move(input.source), file, session.queue(), session.notices(), session.metrics(),
@@ -354,6 +357,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (common.wants_summary()) {
     fmt::print("{}{}{}", summary, blind_summary(session.metrics()), assumed_text(basis.assumed));
   }
+  outlets.require_saved();
   return stop ? static_cast<Exit>(exit_of_signal()) : done;
 }
 

@@ -1,22 +1,31 @@
 // robomill monitor as a user runs it on samples that come while they are taken: a pipe, a broker.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <span>
+#include <sstream>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "monitor/http_get.hpp"
 #include "monitor/mqtt.hpp"
 #include "monitor/test_monitor.hpp"
-#include "monitor/test_processes.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
+#include "testing/processes.hpp"
 
 namespace robomill::app {
 namespace monitor_stream_test {
@@ -51,6 +60,75 @@ TEST_F(MonitorVerb, MissesSamplesOfAPipe) {
   ASSERT_NE(blind, times.end()) << times;
   EXPECT_EQ((*blind)["reason"], "no-signal");
   EXPECT_GE((*blind)["duration_s"].get<double>(), 0.2);
+}
+
+// A night's events are there after the next start, each session behind its "started".
+TEST_F(MonitorVerb, AppendsToTheEventsOfEarlierSessions) {
+  const std::vector<float> samples = cut(5.0, true);
+  folder_.file("rec.raw", {reinterpret_cast<const char*>(samples.data()), 4 * samples.size()});
+  folder_.file("events.jsonl", "{\"event\":\"old\"}\n{\"event\":\"cut o");
+  for (int session = 1; session <= 2; ++session) {
+    const Ended run =
+        shell("cat rec.raw | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - --format f32 -o events.jsonl");
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.err.find("its last line was not finished") == std::string::npos, session == 2) << run.err;
+  }
+  std::vector<std::string> kinds;
+  std::istringstream lines(slurp(folder_.at("events.jsonl")));
+  for (std::string line; std::getline(lines, line);) {
+    const json event = json::parse(line, nullptr, false);
+    const std::string kind = event.is_discarded() ? "cut" : event.at("event").get<std::string>();
+    if (kind == "old" || kind == "cut" || kind == "started" || event.value("state", "") == "chatter") {
+      kinds.push_back(kind);
+    }
+    if (kind == "started") {
+      EXPECT_EQ(event.at("input"), "standard input");
+      EXPECT_EQ(event.at("config"), "monitor.toml");
+    }
+  }
+  ASSERT_GE(kinds.size(), 6U);
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), "started"), 2);
+  EXPECT_EQ(kinds[0], "old");
+  EXPECT_EQ(kinds[1], "cut");
+  EXPECT_EQ(kinds[2], "started");
+  EXPECT_EQ(kinds[3], "state");
+  EXPECT_EQ(kinds.back(), "state");
+}
+
+// A full disk ends no watch: what is found is shown, and in the end it is said that nothing was saved.
+TEST_F(MonitorVerb, GoesOnWhereEventsCannotBeSaved) {
+  const std::vector<float> samples = cut(6.0, true);
+  folder_.file("rec.raw", {reinterpret_cast<const char*>(samples.data()), 4 * samples.size()});
+  const Ended run =
+      shell("cat rec.raw | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - --format f32 -o /dev/full");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_NE(run.out.find("chatter at 68"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("decisions, 1 alarm"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("events-not-saved"), std::string::npos) << run.out;
+  const std::size_t said = run.err.find("robomill: /dev/full: events cannot be saved: No space left on device");
+  EXPECT_NE(said, std::string::npos) << run.err;
+  EXPECT_EQ(run.err.find("events cannot be saved", said + 30), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("events could not be saved"), std::string::npos) << run.err;
+}
+
+// The speed column says for half a second that the spindle hardly turns.
+TEST_F(MonitorVerb, AlarmsAfterAStandstill) {
+  const std::vector<float> samples = cut(8.0, true);
+  std::string csv = "ax_m_per_s2,spindle_speed_rpm\n";
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    csv += std::to_string(samples[i]) + (static_cast<double>(i) < 0.5 * rate_hz ? ",0.05\n" : ",3000\n");
+  }
+  folder_.file("rec.csv", csv);
+  const Ended run = shell("timeout 120 '" ROBOMILL_PROGRAM "' monitor monitor.toml --input rec.csv -o events.jsonl");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const json alarm = first_alarm();
+  ASSERT_FALSE(alarm.is_null()) << run.out;
+  EXPECT_GT(alarm["time_s"].get<double>(), onset_s);
+  EXPECT_LT(alarm["time_s"].get<double>(), onset_s + 0.5);
+  const std::vector<json> states = events_of("state");
+  EXPECT_EQ(states[0]["state"], "blind");
+  EXPECT_EQ(states[0]["reason"], "standstill");
+  EXPECT_NE(run.out.find("cannot tell: standstill, for 0.475 s"), std::string::npos) << run.out;
 }
 
 /// A port at which connections are taken and nothing is ever said.
@@ -249,6 +327,81 @@ TEST_F(MonitorStream, MissesTheBlocksOfABroker) {
   EXPECT_EQ(states[0]["state"], "blind");
   EXPECT_NE(states[1]["state"], "blind");
   EXPECT_NE(slurp(folder_.at("out.txt")).find("cannot tell: no-signal"), std::string::npos);
+}
+
+TEST_F(MonitorStream, EventsOutliveAKill) {
+  listen();
+  begin();
+  send("garbage");
+  ASSERT_TRUE(wait_for([&] { return has_event("refused-messages"); }));
+  monitor_->signal(SIGKILL);
+  EXPECT_EQ(monitor_->wait(), 128 + SIGKILL);
+  const std::size_t before = events().size();
+  listen();
+  begin();
+  interrupt();
+  EXPECT_GT(events().size(), before);
+  ASSERT_EQ(events_of("started").size(), 2U);
+  EXPECT_EQ(events().front()["event"], "started");
+  EXPECT_EQ(events_of("refused-messages").size(), 1U);
+}
+
+/// A pipe in the place of standard output that is not read until asked to.
+class UnreadPipe {
+ public:
+  explicit UnreadPipe(const std::filesystem::path& place) {
+    EXPECT_EQ(::mkfifo(place.c_str(), 0600), 0);
+    descriptor_ = ::open(place.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    EXPECT_GE(::fcntl(descriptor_, F_SETPIPE_SZ, 4096), 4096);
+  }
+  ~UnreadPipe() {
+    thread_ = {};
+    ::close(descriptor_);
+  }
+  UnreadPipe(const UnreadPipe&) = delete;
+  UnreadPipe& operator=(const UnreadPipe&) = delete;
+  void read() {
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      std::array<char, 4096> bytes = {};
+      while (!stop.stop_requested()) {
+        if (::read(descriptor_, bytes.data(), bytes.size()) <= 0) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+      }
+    });
+  }
+
+ private:
+  int descriptor_ = -1;
+  std::jthread thread_;
+};
+
+// Nobody reads standard output, and the thread of the decisions hangs where it writes: all other ways say so.
+TEST_F(MonitorStream, SaysThatItsDecisionsHang) {
+  UnreadPipe out(folder_.at("out.fifo"));
+  monitor_ =
+      std::make_unique<test::Process>(std::vector<std::string>{ROBOMILL_PROGRAM, "monitor", folder_.at("monitor.toml"),
+                                                               "-o", "-", "--every-window", "--metrics-port", "0"},
+                                      folder_.at("out.fifo"), folder_.at("err.txt"));
+  ASSERT_TRUE(wait_for([this] { return metrics_port() > 0; })) << slurp(folder_.at("err.txt"));
+  begin();
+  std::uint64_t number = 1;
+  ASSERT_TRUE(wait_for([&] {
+    if (number < 70) send(message(number++));
+    return metric("state") == 3.0;
+  }));
+  EXPECT_GE(metric("behind_seconds"), 1.0);
+  EXPECT_GT(metric("blind_seconds_total{reason=\"overloaded\"}"), 0.9);
+  EXPECT_TRUE(wait_for([&] { return published("\"reason\":\"overloaded\""); }));
+  EXPECT_TRUE(wait_for([&] { return slurp(folder_.at("err.txt")).find("blind (overloaded)\n") != std::string::npos; }));
+  out.read();
+  ASSERT_TRUE(wait_for([&] {
+    if (number < 150) send(message(number++));
+    return metric("state") < 3.0;
+  }));
+  EXPECT_TRUE(wait_for([&] { return slurp(folder_.at("err.txt")).find("keep up") != std::string::npos; }));
+  monitor_->signal(SIGINT);
+  EXPECT_EQ(monitor_->wait(), 130) << slurp(folder_.at("err.txt"));
 }
 
 TEST_F(MonitorStream, PublishesEventsOfARecording) {

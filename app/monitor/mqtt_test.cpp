@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "test_processes.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::app {

@@ -9,7 +9,7 @@
 #include "http_get.hpp"
 #include "metrics_server.hpp"
 #include "robomill/base/error.hpp"
-#include "test_processes.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 #include "watch.hpp"
 
@@ -39,6 +39,21 @@ TEST(Metrics, AnswerInTheTextFormat) {
   EXPECT_NE(
       test::rejection([&] { const MetricsServer second(values, "127.0.0.1", server.port()); }).find("cannot listen"),
       std::string::npos);
+}
+
+// A page whose name was made to point at this machine has its own name in its requests.
+TEST(Metrics, AreNotForOtherHosts) {
+  const live::MetricValues values;
+  const MetricsServer server(values, "localhost", 0);
+  const std::string port = ":" + std::to_string(server.port());
+  for (const char* host : {"localhost", "127.0.0.1", "[::1]"}) {
+    EXPECT_EQ(test::http_get(server.port(), "/metrics", host + port).rfind("HTTP/1.1 200 OK", 0), 0U) << host;
+  }
+  for (const std::string& host : {"evil.example" + port, std::string("localhost"), std::string("localhost:1")}) {
+    const std::string answer = test::http_get(server.port(), "/metrics", host);
+    EXPECT_EQ(answer.rfind("HTTP/1.1 403", 0), 0U) << answer;
+    EXPECT_EQ(answer.find("robomill_state"), std::string::npos) << host;
+  }
 }
 
 // Ten that connect and say nothing must not keep an eleventh waiting: the server holds each for a while.

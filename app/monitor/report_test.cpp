@@ -34,7 +34,7 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
   live::Recorder recorder(file.options, file.columns.channels, "");
   live::SessionOutputs outputs;
   outputs.samples = [&](std::span<const float> samples) { recorder.add(samples); };
-  outputs.skipped = [&](std::uint64_t frames) { recorder.skip(frames); };
+  outputs.skipped = [&](std::uint64_t frames, monitor::BlindReason reason) { recorder.skip(frames, reason); };
   outputs.decision = [&](monitor::Decision decision, double time_s, double compute_s) {
     decision.time_s = time_s;
     recorder.add(decision, compute_s);

@@ -11,9 +11,9 @@
 
 #include "monitor/mqtt.hpp"
 #include "monitor/test_monitor.hpp"
-#include "monitor/test_processes.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
+#include "testing/processes.hpp"
 #include "testing/serve/hammer.hpp"
 #include "testing/serve/http_client.hpp"
 

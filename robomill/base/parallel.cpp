@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <thread>
 
 #ifdef ROBOMILL_TBB
@@ -21,7 +22,17 @@ std::atomic<int>& requested_threads() {
   return threads;
 }
 
+thread_local int most_threads = std::numeric_limits<int>::max();
+
 }  // namespace
+
+ThreadLimit::ThreadLimit(int most) : before_(most_threads) {
+  most_threads = std::clamp(most, 1, before_);
+}
+
+ThreadLimit::~ThreadLimit() {
+  most_threads = before_;
+}
 
 void set_thread_count(int threads) {
   requested_threads() = std::max(threads, 0);
@@ -29,7 +40,8 @@ void set_thread_count(int threads) {
 
 int thread_count() {
   const int requested = requested_threads();
-  return requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::min(threads, most_threads);
 }
 
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {

@@ -19,6 +19,19 @@ ROBOMILL_API void parallel_for(std::size_t n, std::size_t grain,
 
 /// Threads that parallel_for uses from now on; 0 means one a core.
 ROBOMILL_API void set_thread_count(int threads);
+/// What parallel_for of this thread uses.
 [[nodiscard]] ROBOMILL_API int thread_count();
+
+/// While it lives, this thread's parallel_for uses at most so many.
+class ROBOMILL_API ThreadLimit {
+ public:
+  explicit ThreadLimit(int most);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  int before_;
+};
 
 }  // namespace robomill

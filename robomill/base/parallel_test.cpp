@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace robomill {
@@ -31,6 +32,26 @@ TEST_P(ParallelFor, PassesOnAnException) {
     if (begin == 17) throw std::runtime_error("seventeen");
   };
   EXPECT_THROW(parallel_for(100, 1, body), std::runtime_error);
+}
+
+TEST(ThreadLimit, HoldsForItsLifeAndNotForMore) {
+  set_thread_count(8);
+  {
+    const ThreadLimit three(3);
+    EXPECT_EQ(thread_count(), 3);
+    {
+      const ThreadLimit five(5);
+      EXPECT_EQ(thread_count(), 3);
+      const ThreadLimit none(0);
+      EXPECT_EQ(thread_count(), 1);
+    }
+    EXPECT_EQ(thread_count(), 3);
+    int others = 0;
+    std::thread([&] { others = thread_count(); }).join();
+    EXPECT_EQ(others, 8);
+  }
+  EXPECT_EQ(thread_count(), 8);
+  set_thread_count(0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, testing::Values(1, 2, 8));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/beam_element.hpp"
@@ -186,6 +187,25 @@ void JointFitOptions::validate() const {
   require_share("noise_floor", noise_floor);
 }
 
+namespace {
+
+/// Each individual of each generation is a tip FRF.
+void require_affordable_genes(const JointFitOptions& options, Index lines) {
+  constexpr double operations_of_line = 6.0, bytes_of_individual = 200.0, usual = 50.0;
+  const double population = options.population, generations = options.generations;
+  require_affordable(
+      {.operations = population * generations * (1e3 + operations_of_line * static_cast<double>(lines)),
+       .bytes = bytes_of_individual * (population + generations),
+       .dominant = dominant_of(
+           {{.field = "population", .value = population, .unit = "individuals", .times_usual = population / usual},
+            {.field = "generations",
+             .value = generations,
+             .unit = "generations",
+             .times_usual = generations / usual}})});
+}
+
+}  // namespace
+
 JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured, const JointFitOptions& options,
                          Progress& progress) {
   options.validate();
@@ -197,6 +217,7 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
   JointFitResult result;
   const std::vector<Index> lines = fitted_lines(measured.frequency_hz, frf, result.notes);
   const Eigen::VectorXd frequency_hz = measured.frequency_hz(lines);
+  if (options.method == JointMethod::ga) require_affordable_genes(options, frequency_hz.size());
   detail::Base base = detail::base_receptances(assembly.holder, frequency_hz);
   result.notes.insert(result.notes.end(), base.notes.begin(), base.notes.end());
   note_suspects(measured, frf, base, result);

@@ -13,6 +13,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/linear_algebra.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -232,7 +233,7 @@ void judge(std::size_t rows, SlotFit& fit) {
 void SlotForce::validate() const {
   require_positive("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_positive("axial_depth_m", axial_depth_m, "m", "Without depth there is no force to learn from");
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  if (spindle_speed_rad_per_s != 0.0) require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   for (const double force_n : mean_force_n) require_finite("mean_force_n", force_n, "N");
 }
 

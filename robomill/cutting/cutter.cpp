@@ -132,6 +132,10 @@ std::vector<Piece> pieces_of(const Outline& o) {
 void Cutter::validate() const {
   mill.validate();
   require_non_negative("cutting_height_m", cutting_height_m, "m");
+  if (cutting_height_m > 1.0) {
+    throw InvalidInput("cutting_height_m", cutting_height_m, "m", "is too long for a cutter's edges",
+                       "Are the units mixed up?");
+  }
   if (kind == CutterKind::bull_nose) {
     require_positive("corner_radius_m", corner_radius_m, "m");
     if (!(corner_radius_m < 0.5 * mill.diameter_m)) {

@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cutting/chip.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/degrees.hpp"
 #include "robomill/cutting/polynomial.hpp"
 
@@ -205,7 +206,8 @@ void MillingCoefficients::validate(double from_position_rad, double to_position_
     throw InvalidInput("tangential_n_per_m2", "must be given", "Aluminium is near 700 N/mm^2 = 7e8 N/m^2");
   }
   check_cutting("tangential_n_per_m2", tangential_n_per_m2, from_position_rad, to_position_rad, false);
-  check_cutting("radial_n_per_m2", radial_n_per_m2, from_position_rad, to_position_rad, false);
+  // One number may be negative: some cutters and fibres pull the tooth in. A polynomial that turns so is a misprint.
+  check_cutting("radial_n_per_m2", radial_n_per_m2, from_position_rad, to_position_rad, radial_n_per_m2.size() == 1);
   check_cutting("axial_n_per_m2", axial_n_per_m2, from_position_rad, to_position_rad, true);
   check_edge("tangential_edge_n_per_m", tangential_edge_n_per_m, from_position_rad, to_position_rad);
   check_edge("radial_edge_n_per_m", radial_edge_n_per_m, from_position_rad, to_position_rad);
@@ -213,12 +215,8 @@ void MillingCoefficients::validate(double from_position_rad, double to_position_
 }
 
 void CutMotion::validate() const {
-  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
-  if (feed_per_tooth_m > 0.01) {
-    throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m", "is too large for any cutter",
-                       "0.1 mm = 1e-4 m is usual; are the units mixed up?");
-  }
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  require_feed_per_tooth("feed_per_tooth_m", feed_per_tooth_m);
+  if (spindle_speed_rad_per_s != 0.0) require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
 }
 
 void ForceOptions::validate() const {
@@ -292,7 +290,7 @@ RingCoefficients ForceKernel::Memory::at_ring(double position) const {
                               .radial_edge = polynomial(coefficients.radial_edge_n_per_m, position),
                               .axial_edge = polynomial(coefficients.axial_edge_n_per_m, position)};
   if (k.tangential < 0.0) reject_negative("tangential_n_per_m2", k.tangential, position);
-  if (k.radial < 0.0) reject_negative("radial_n_per_m2", k.radial, position);
+  if (k.radial < 0.0 && coefficients.radial_n_per_m2.size() > 1) reject_negative("radial_n_per_m2", k.radial, position);
   return k;
 }
 

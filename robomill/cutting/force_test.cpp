@@ -367,6 +367,19 @@ TEST(MillingCoefficients, SayWhereTheyAreNegative) {
   EXPECT_EQ(field_of([&] { static_cast<void>(kernel.summary(engagement, {})); }), "radial_n_per_m2");
 }
 
+// As fits to a cutter of a high rake angle have it; only a polynomial that changes its sign is a misprint.
+TEST(MillingCoefficients, OneRadialNumberMayPullTheToothIn) {
+  MillingCoefficients c = published();
+  c.radial_n_per_m2 = {-200e6};
+  EXPECT_NO_THROW(c.validate(0.0, 0.5 * pi));
+  const Cutter cutter = ball_end(3.0 * mm);
+  const Engagement engagement = engage(cutter, {.axial_depth_m = mm, .radial_depth_m = mm});
+  const CutMotion motion = {.feed_per_tooth_m = 0.02 * mm, .spindle_speed_rad_per_s = 1000.0};
+  EXPECT_GT(cutting_force(cutter, engagement, c, motion).peak_force_n, 0.0);
+  c.tangential_n_per_m2 = {-200e6};
+  EXPECT_EQ(field_of([&] { c.validate(0.0, 0.5 * pi); }), "tangential_n_per_m2");
+}
+
 TEST(MillingCoefficients, RejectsMixedUpUnits) {
   const auto field = [](auto change) {
     MillingCoefficients c = published();

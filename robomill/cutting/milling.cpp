@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/chip.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -244,7 +245,7 @@ void Milling::validate() const {
   coefficients.validate();
   process_damping.validate();
   speed_variation.validate();
-  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
+  require_feed_per_tooth("feed_per_tooth_m", feed_per_tooth_m);
   if (tool.runout_m > 0.0 && !(feed_per_tooth_m > 0.0)) {
     throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m", "must be > 0 where there is runout",
                        "It decides which teeth miss the cut");

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/dexels/ring_look.hpp"
@@ -18,7 +19,7 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr std::size_t ring_grain = 8;
-constexpr double most_looks = 1e12;          ///< along a program: hours
+constexpr double operations_of_look = 60.0;  ///< at the material, with what is taken away
 constexpr double looks_worth_sharing = 3e4;  ///< looks; fewer are done before another thread has woken
 
 using detail::RingLook;
@@ -296,11 +297,15 @@ class Walker {
     }
     double poses = 0.0;
     for (std::size_t i = 0; i < program.blocks.size(); ++i) poses += parts_of(i);
-    if (!(poses * finder_.looks() <= most_looks)) {
-      throw InvalidInput("dexel_m", workpiece.dexel_m(), "m",
-                         "asks for more than 1e12 looks at the material along this program",
-                         "Give a larger one, or a shorter program");
-    }
+    constexpr double usual_dexel_m = 2.5e-4, usual_poses = 10'000.0;
+    require_affordable(
+        {.operations = operations_of_look * poses * finder_.looks(),
+         .dominant = dominant_of(
+             {{.field = "dexel_m",
+               .value = workpiece.dexel_m(),
+               .unit = "m",
+               .times_usual = std::pow(usual_dexel_m / workpiece.dexel_m(), 2)},
+              {.field = "program, parts of its blocks", .value = poses, .times_usual = poses / usual_poses}})});
   }
 
   /// Up to a batch of further parts; none at the end.

@@ -103,8 +103,8 @@ using Deliver = std::function<void(std::span<const BlockEngagement>)>;
 
 /// Runs the program through the workpiece, part by part, and hands out what it finds in order, a batch at a time;
 /// memory does not grow with the program.
-/// @throws InvalidInput for a bad cutter, bad options, a feed move without duration or more than 1e12 looks at the
-/// material, Interrupted when asked to stop
+/// @throws InvalidInput for a bad cutter, bad options, a feed move without duration or more looks at the material than
+/// may be taken (base/cost.hpp), Interrupted when asked to stop
 ROBOMILL_API void walk(const program::Program& program, const Cutter& cutter, Workpiece& workpiece,
                        const WalkOptions& options, const Deliver& deliver, Progress& progress = Progress::none());
 

@@ -420,7 +420,7 @@ TEST(Walk, RejectsWhatWouldNotEnd) {
   EXPECT_EQ(test::field_of([&] {
               walk(program, end_mill(CutterKind::ball_end, 3e-3), part, {}, [](auto) { FAIL() << "has begun"; });
             }),
-            "dexel_m");
+            "program, parts of its blocks");
 }
 
 TEST(Walk, RejectsFeedMovesWithoutDuration) {

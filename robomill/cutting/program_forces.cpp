@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/moving_mean.hpp"
 #include "robomill/cutting/program_engagement_local.hpp"
@@ -128,7 +129,7 @@ SurfaceCut surface_cut(const LocalCut& local, const Eigen::Vector3d& axis, doubl
 }  // namespace
 
 void ProgramForceOptions::validate() const {
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  if (spindle_speed_rad_per_s != 0.0) require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   require_positive("power_time_s", power_time_s, "s");
   force.validate();
   walk.validate();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/dexels/workpiece_rays.hpp"
@@ -14,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using Cells = Eigen::Array<std::ptrdiff_t, 3, 1>;
 
-constexpr double most_rays = 4e7;  ///< 1 GB of them
+constexpr double bytes_of_ray = 36.0;  ///< with some that have two intervals
+constexpr double finest_dexel_m = 1e-6;
 constexpr std::size_t row_grain = 16;
 constexpr double worth_sharing = 6e4;   ///< rays; fewer are cut before another thread has woken
 constexpr double shank_patience = 4.0;  ///< how much farther than the edges the shank may swing in a step
@@ -52,6 +54,29 @@ void turned_column(const std::vector<Eigen::Vector2d>& outline, double radius, c
     }
   }
   add(span);
+}
+
+/// Each ray is filled, too.
+void require_affordable_rays(double rays, double dexel_m, const Stock& stock) {
+  constexpr double usual_dexel_m = 2.5e-4, usual_size_m = 0.3, operations_of_ray = 30.0;
+  const double size_m = (stock.highest_m() - stock.lowest_m()).maxCoeff();
+  const bool box = stock.shape == Stock::Shape::box;
+  // The corner that lies farther from the origin.
+  const bool low = stock.min_m.cwiseAbs().maxCoeff() > stock.max_m.cwiseAbs().maxCoeff();
+  const Vector3d& corner = low ? stock.min_m : stock.max_m;
+  Eigen::Index axis = 0;
+  corner.cwiseAbs().maxCoeff(&axis);
+  require_affordable(
+      {.operations = operations_of_ray * rays,
+       .bytes = bytes_of_ray * rays,
+       .dominant = dominant_of(
+           {{.field = "dexel_m", .value = dexel_m, .unit = "m", .times_usual = std::pow(usual_dexel_m / dexel_m, 2)},
+            {.field = !box  ? "radius_m"
+                      : low ? "min_m"
+                            : "max_m",
+             .value = box ? corner(axis) : 0.5 * size_m,
+             .unit = "m",
+             .times_usual = std::pow(size_m / usual_size_m, 2)}})});
 }
 
 void fill(Rays& rays, const Stock& stock) {
@@ -169,15 +194,16 @@ struct Workpiece::Grid {
 Workpiece::Workpiece(const Stock& stock, double dexel_m) : grid_(std::make_unique<Grid>()) {
   stock.validate();
   require_positive("dexel_m", dexel_m, "m");
+  if (dexel_m < finest_dexel_m) {
+    throw InvalidInput("dexel_m", dexel_m, "m", "must be at least 1 µm", "0.25 mm is usual; are the units mixed up?");
+  }
   Grid& grid = *grid_;
   grid.lowest = stock.lowest_m();
   grid.highest = stock.highest_m();
   const Vector3d size = grid.highest - grid.lowest;
   const Eigen::Array3d counts = (size.array() / dexel_m - 1e-9).ceil().max(1.0);
   const double needed = counts[0] * counts[1] + counts[1] * counts[2] + counts[2] * counts[0];
-  if (!(needed <= most_rays)) {
-    throw InvalidInput("dexel_m", dexel_m, "m", "asks for more than 4e7 rays", "Give a larger one, or less stock");
-  }
+  require_affordable_rays(needed, dexel_m, stock);
   grid.spacing = (size.array() / counts).matrix();
   grid.dexel = grid.spacing.maxCoeff();
   const Cells cells = counts.cast<std::ptrdiff_t>();

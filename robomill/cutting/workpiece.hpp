@@ -52,7 +52,7 @@ struct ROBOMILL_API Removal {
 class ROBOMILL_API Workpiece {
  public:
   /// @param dexel_m  > 0; the grid fits the stock's box: each spacing divides its side, and spacing <= dexel_m
-  /// @throws InvalidInput for bad stock, or a dexel that asks for more than 4e7 rays
+  /// @throws InvalidInput for bad stock, a dexel below 1 µm, or more rays than may be taken (base/cost.hpp)
   Workpiece(const Stock& stock, double dexel_m);
   ~Workpiece();
   Workpiece(Workpiece&&) noexcept;

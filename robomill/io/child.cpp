@@ -1,93 +1,143 @@
 #include "robomill/io/child.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
-#include <string_view>
+#include <thread>
+
+#include "robomill/io/descriptor.hpp"
+#include "robomill/io/sandbox.hpp"
+#include "robomill/io/sanitized.hpp"
 
 namespace robomill::io {
 namespace {
 
-bool write_whole(int to, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(to, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
+using Clock = std::chrono::steady_clock;
+
+/// Of the address space, which a child has from its parent; 0: none is known.
+std::uint64_t address_space_bytes() {
+  std::uint64_t pages = 0;
+  if (sanitized || !(std::ifstream("/proc/self/statm") >> pages)) return 0;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// Closes all descriptors but the standard ones and two. A kernel before 5.9 cannot, and has no Landlock either.
+void keep_only(int one, int other) {
+  const auto [first, second] = std::minmax(one, other);
+  int next = STDERR_FILENO + 1;
+  for (const int kept : {first, second}) {
+    if (kept < next) continue;
+    if (kept > next) ::close_range(static_cast<unsigned>(next), static_cast<unsigned>(kept - 1), 0);
+    next = kept + 1;
   }
-  return true;
+  ::close_range(static_cast<unsigned>(next), ~0U, 0);
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool sanitized = true;  // their shadow memory fills the address space
-#elif defined(__has_feature)
-constexpr bool sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool sanitized = false;
-#endif
-
-void limit_memory(std::size_t more_bytes) {
-  if (sanitized) return;
-  std::size_t pages = 0;
-  if (!(std::ifstream("/proc/self/statm") >> pages)) return;
-  const rlim_t most = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + more_bytes;
-  const rlimit memory{most, most};
-  ::setrlimit(RLIMIT_AS, &memory);
-}
-
-[[noreturn]] void be_child(int to, std::size_t more_memory_bytes, const std::function<std::string()>& body) {
+[[noreturn]] void be_child(int to, rlim_t most_address_space, const std::function<std::string()>& body,
+                           const ChildLimits& limits, const sigset_t& unblocked) {
   int status = 1;
-  // Whatever ends the parent ends the child; the parent's handlers would remove the parent's files.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGPIPE}) ::signal(signal, SIG_DFL);
+  ::pthread_sigmask(SIG_SETMASK, &unblocked, nullptr);
+  // Whatever ends the parent ends the child.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    limit_memory(more_memory_bytes);
+    if (most_address_space > 0) {
+      const rlimit memory{most_address_space, most_address_space};
+      ::setrlimit(RLIMIT_AS, &memory);
+    }
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) ::signal(signal, SIG_DFL);
+    keep_only(to, limits.lent);
     const int nowhere = ::open("/dev/null", O_WRONLY);
-    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (write_whole(to, body())) status = 0;
+    if (nowhere >= 0) {
+      ::dup2(nowhere, STDERR_FILENO);
+      ::close(nowhere);
+    }
+    static_cast<void>(restrict_files({.connects = false}));
+    restrict_to_more_files(limits.more_files);
+    if (write_all(to, body()) == 0) status = 0;
   } catch (...) {
     status = 1;
   }
   ::_exit(status);
 }
 
-std::string read_whole(int from) {
+/// Nothing where it does not come to its end in time, or is longer than it may be.
+std::optional<std::string> read_whole(int from, std::size_t most_bytes, Clock::time_point end) {
   std::string bytes;
   std::array<char, 1 << 16> block = {};
-  while (true) {
+  while (bytes.size() <= most_bytes) {
+    pollfd waiting = {.fd = from, .events = POLLIN, .revents = 0};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    const int ready = ::poll(&waiting, 1, static_cast<int>(std::clamp<long>(left, 0, 1000)));
+    if (ready == 0 && left <= 0) return std::nullopt;
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     const ssize_t count = ::read(from, block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return bytes;
+    if (count < 0) return std::nullopt;
+    if (count == 0) return bytes;
     bytes.append(block.data(), static_cast<std::size_t>(count));
   }
+  return std::nullopt;
+}
+
+/// Waits for its end; whether it ended by itself, in time, and well.
+bool ended_well(pid_t child, bool in_time, Clock::time_point end) {
+  if (!in_time) ::kill(child, SIGKILL);
+  int status = 0;
+  pid_t ended = 0;
+  while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
+    if (in_time && Clock::now() > end) {
+      in_time = false;
+      ::kill(child, SIGKILL);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return in_time && ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace
 
-std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std::function<std::string()>& body) {
+std::optional<std::string> run_in_child(const ChildLimits& limits, const std::function<std::string()>& body) {
+  // Here, since a program whose files are restricted may look at its own state, and not at its child's.
+  const std::uint64_t now = address_space_bytes();
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  // Until the child has its own, the parent's handlers would remove the parent's files.
+  sigset_t every, before;
+  ::sigfillset(&every);
+  ::pthread_sigmask(SIG_BLOCK, &every, &before);
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], more_memory_bytes, body);
+  if (child == 0) be_child(ends[1], now > 0 ? now + limits.more_memory_bytes : 0, body, limits, before);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[1]);
-  std::string bytes = child > 0 ? read_whole(ends[0]) : std::string();
-  ::close(ends[0]);
-  if (child < 0) return std::nullopt;
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  if (child < 0) {
+    ::close(ends[0]);
+    return std::nullopt;
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
-  return bytes;
+  const Clock::time_point end = Clock::now() + limits.time;
+  std::optional<std::string> bytes;
+  try {
+    bytes = read_whole(ends[0], limits.more_memory_bytes, end);
+  } catch (...) {  // no memory here
+    static_cast<void>(ended_well(child, false, end));
+    ::close(ends[0]);
+    throw;
+  }
+  ::close(ends[0]);
+  return ended_well(child, bytes.has_value(), end) ? bytes : std::nullopt;
 }
 
 }  // namespace robomill::io

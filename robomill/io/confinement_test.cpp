@@ -36,7 +36,7 @@ TEST(Confinement, LetsOutNeitherReadersNorWriters) {
       EXPECT_NE(rejection([&] { (void)read_file(path); }).find("outside the folder that is served"), std::string::npos)
           << path;
       EXPECT_NE(rejection([&] { write_file(path, "x"); }).find("outside"), std::string::npos) << path;
-      EXPECT_NE(rejection([&] { const LineFile file(path, true); }).find("outside"), std::string::npos) << path;
+      EXPECT_NE(rejection([&] { const LineFile file(path); }).find("outside"), std::string::npos) << path;
       EXPECT_NE(rejection([&] { (void)remove_file(path); }).find("outside"), std::string::npos) << path;
     }
     EXPECT_NE(rejection([&] { make_folder(outside / "new"); }).find("outside"), std::string::npos);
@@ -59,7 +59,7 @@ TEST(Confinement, LinksWithoutATargetLeadNowhere) {
   fs::create_symlink("loop", inside / "loop");
   const Confinement confinement(inside);
   for (const fs::path& path : {inside / "link.txt", inside / "way" / "a.txt", inside / "loop"}) {
-    EXPECT_NE(rejection([&] { const LineFile file(path, true); }), "") << path;
+    EXPECT_NE(rejection([&] { const LineFile file(path); }), "") << path;
     EXPECT_NE(rejection([&] { write_file(path, "x"); }), "") << path;
     EXPECT_NE(rejection([&] { make_folder(path); }), "") << path;
   }
@@ -74,7 +74,7 @@ TEST(Confinement, PipesAreNotOpened) {
   const Confinement confinement(folder.path());
   EXPECT_NE(rejection([&] { (void)read_file(pipe); }).find("a device or a pipe"), std::string::npos);
   EXPECT_NE(rejection([&] { write_file(pipe, "x"); }).find("a device or a pipe"), std::string::npos);
-  EXPECT_NE(rejection([&] { const LineFile file(pipe, true); }).find("a device or a pipe"), std::string::npos);
+  EXPECT_NE(rejection([&] { const LineFile file(pipe); }).find("a device or a pipe"), std::string::npos);
 }
 
 TEST(Confinement, ASecondOneLeavesTheFirstAsItIs) {

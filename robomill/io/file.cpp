@@ -1,5 +1,6 @@
 #include "robomill/io/file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -9,11 +10,15 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <regex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
+#include "robomill/io/folder_change.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/io/pending_names.hpp"
 
 namespace robomill::io {
@@ -25,27 +30,14 @@ namespace fs = std::filesystem;
   throw InvalidInput(path.string(), std::move(rule), std::move(hint));
 }
 
-void write_all(const fs::path& place, const fs::path& named, std::string_view content) {
-  errno = 0;
-  std::ofstream out(place, std::ios::binary | std::ios::trunc);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out) reject(named, "cannot be written", errno != 0 ? std::strerror(errno) : "");
-}
+constexpr unsigned owner_writes = 0600;
+constexpr int most_links = 40;  // as the kernel follows
 
-/// A link stays a link: what it points to is replaced, or taken away.
-fs::path behind_link(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_symlink(path, ignored)) return path;
-  const fs::path target = fs::weakly_canonical(path, ignored);
-  return ignored || target.empty() ? path : target;
-}
-
-/// A device or a pipe cannot be renamed over; nothing of it remains half-written either.
-bool is_special(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+/// A name of a file by a descriptor that is open, /dev/stdout for one: renaming over it would take what it is open for.
+bool names_open_file(const fs::path& path) {
+  std::vector<fs::path> links = links_of(path);
+  links.pop_back();
+  return std::ranges::any_of(links, [](const fs::path& link) { return link.native().starts_with("/proc/"); });
 }
 
 /// A device or a pipe keeps who opens it waiting. On a command line that is wanted; a server names none.
@@ -54,6 +46,44 @@ void require_regular_if_confined(const fs::path& path) {
 }
 
 }  // namespace
+
+std::vector<fs::path> links_of(const fs::path& path) {
+  std::vector<fs::path> out = {path};
+  std::error_code error;
+  for (int links = 0; links < most_links && fs::is_symlink(out.back(), error); ++links) {
+    const fs::path target = fs::read_symlink(out.back(), error);
+    if (error) break;
+    out.push_back(out.back().parent_path() / target);
+  }
+  return out;
+}
+
+fs::path behind_link(const fs::path& path) {
+  return links_of(path).back();
+}
+
+bool is_special(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+fs::path temporary_name(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  fs::path name;
+  std::error_code ignored;
+  do {  // a killed process of the same number may have left one
+    name = path.parent_path() / fmt::format(".{}.{}-{}{}", path.stem().string(), ::getpid(), counter.fetch_add(1),
+                                            path.extension().string());
+  } while (fs::exists(fs::symlink_status(name, ignored)));
+  return name;
+}
+
+bool is_temporary_name(const fs::path& path) {
+  // .STEM.PROCESS-NUMBER, and perhaps an extension
+  static const std::regex form(R"(\..+\.\d+-\d+(\.[^.]*)?)");
+  return std::regex_match(path.filename().string(), form);
+}
 
 Format format_of(const fs::path& path) {
   static constexpr std::array<std::pair<std::string_view, Format>, 11> endings = {{{".uff", Format::uff},
@@ -78,6 +108,8 @@ Format format_of(const fs::path& path) {
 
 std::ifstream open_file(const fs::path& path) {
   require_inside(path);
+  require_no_output(path);
+  require_completed(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) reject(path, "there is no such file");
@@ -110,20 +142,30 @@ std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
 void write_file(const fs::path& path, std::string_view content) {
   require_inside(path);
   require_regular_if_confined(path);
-  if (is_special(path)) {
-    write_all(path, path, content);
+  if (!is_special(path)) {
+    PendingFile pending(path);
+    pending.write(content);
+    pending.commit();
     return;
   }
-  PendingFile pending(path);
-  write_all(pending.temporary(), path, content);
-  pending.commit();
+  int error = 0;
+  Descriptor device = open_descriptor(path.c_str(), O_WRONLY | O_TRUNC, error);
+  require_success(path, error);
+  require_success(path, write_all(device.get(), content));
+  require_success(path, device.close());
 }
 
 void make_folder(const fs::path& folder) {
   require_inside(folder);
   std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path each = folder; !each.empty() && !fs::exists(each, error); each = each.parent_path()) {
+    missing.push_back(each);
+    if (each == each.parent_path()) break;
+  }
   fs::create_directories(folder, error);
   if (error) reject(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
+  for (const fs::path& each : missing) require_success(each, synchronise_folder(each.parent_path()));
 }
 
 bool remove_file(const fs::path& path) {
@@ -137,55 +179,117 @@ bool remove_file(const fs::path& path) {
 
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   require_inside(path_);
-  static std::atomic<unsigned> counter{0};
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) reject(path_, "is a folder, not a file");
+  if (is_special(path_)) reject(path_, "is a device or a pipe, and this file is written to a place of its own");
+  if (names_open_file(path_)) {
+    reject(path_, "is a file that is open already", "Give the file's own name, or - for standard output");
+  }
   path_ = behind_link(path_);
+  require_inside(path_);
   const fs::path folder = path_.parent_path();
   if (path_.filename().empty() || (!folder.empty() && !fs::is_directory(folder, ignored))) {
     reject(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));
   }
-  temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
-                                    path_.extension().string());
-  register_pending(temporary_);
+  // Nobody may read it who could not read the old one.
+  const fs::file_status old = fs::status(path_, ignored);
+  const auto mode = static_cast<unsigned>(fs::is_regular_file(old) ? old.permissions() : fs::perms{0666});
+  int error = EEXIST;
+  while (error == EEXIST) {
+    temporary_ = temporary_name(path_);
+    register_pending(temporary_);
+    file_ = open_descriptor(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL, error, mode | owner_writes);
+    if (error != 0) forget_pending(temporary_);
+  }
+  require_success(path_, error);
 }
 
 PendingFile::~PendingFile() {
-  std::error_code ignored;
-  if (temporary_.empty()) return;
-  fs::remove(temporary_, ignored);
-  forget_pending(temporary_);
+  discard();
 }
 
-void PendingFile::commit() {
-  std::error_code error;
-  const fs::file_status old = fs::status(path_, error);
-  if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), error);
-  fs::rename(temporary_, path_, error);
-  if (error) reject(path_, "cannot be written", error.message());
+void PendingFile::discard() noexcept {
+  if (temporary_.empty()) return;
+  static_cast<void>(remove_name(temporary_));
   forget_pending(temporary_);
   temporary_.clear();
 }
 
-LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(live) {
+bool PendingFile::keep(int error) noexcept {
+  if (error_ == 0) error_ = error;
+  return error_ == 0;
+}
+
+void PendingFile::require_written() const {
+  require_success(path_, error_);
+}
+
+void PendingFile::write(std::string_view bytes) {
+  write_at(size_, bytes);
+  require_written();
+}
+
+bool PendingFile::write_at(std::uint64_t offset, std::string_view bytes) noexcept {
+  if (error_ != 0 || !keep(write_all_at(file_.get(), bytes, offset))) return false;
+  size_ = std::max<std::uint64_t>(size_, offset + bytes.size());
+  return true;
+}
+
+std::size_t PendingFile::read_at(std::uint64_t offset, std::span<char> bytes) noexcept {
+  std::size_t count = 0;
+  keep(read_all_at(file_.get(), bytes, offset, count));
+  return count;
+}
+
+bool PendingFile::resize(std::uint64_t size) noexcept {
+  if (error_ != 0 || !keep(resize_file(file_.get(), size))) return false;
+  size_ = size;
+  return true;
+}
+
+void PendingFile::prepare() {
+  if (!file_.is_open()) return require_written();
+  std::error_code ignored;
+  const fs::file_status old = fs::status(path_, ignored);
+  // A file system without permissions keeps none.
+  if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), ignored);
+  keep(synchronise(file_.get()));
+  keep(file_.close());
+  require_written();
+}
+
+void PendingFile::commit() {
+  prepare();
+  require_success(path_, rename_file(temporary_, path_));
+  forget_pending(temporary_);
+  temporary_.clear();
+  require_success(path_, synchronise_folder(path_.parent_path()));
+}
+
+LineFile::LineFile(fs::path path) : path_(std::move(path)) {
   require_inside(path_);
   require_regular_if_confined(path_);
-  if (!is_special(path_)) pending_.emplace(path_);
-  if (live) pending_.reset();  // it has checked the place
-  file_.open(pending_ ? pending_->temporary() : path_, std::ios::binary | std::ios::trunc);
+  if (!is_special(path_)) {
+    pending_.emplace(path_);
+    return;
+  }
+  file_.open(path_, std::ios::binary | std::ios::trunc);
   if (!file_) reject(path_, "cannot be written");
 }
 
 bool LineFile::write(std::string_view line) {
+  if (pending_) return pending_->write_at(pending_->size(), line);
   file_.write(line.data(), static_cast<std::streamsize>(line.size()));
-  if (live_) file_.flush();
   return file_.good();
 }
 
 void LineFile::close() {
+  if (pending_) {
+    pending_->commit();
+    return;
+  }
   file_.close();
   if (!file_) reject(path_, "could not be written to its end", "Is the disk full?");
-  if (pending_) pending_->commit();
 }
 
 }  // namespace robomill::io

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,10 +16,6 @@ namespace fs = std::filesystem;
 using test::Folder;
 using test::rejection;
 
-std::size_t count(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
 TEST(File, KeepsEveryByte) {
   const Folder folder;
   std::string content;
@@ -29,7 +24,7 @@ TEST(File, KeepsEveryByte) {
   EXPECT_EQ(read_file(folder.at("bytes.bin")), content);
   write_file(folder.at("bytes.bin"), "short");
   EXPECT_EQ(read_file(folder.at("bytes.bin")), "short");
-  EXPECT_EQ(count(folder.path()), 1u);
+  EXPECT_EQ(folder.count(), 1u);
 }
 
 TEST(File, SaysWhatIsWrong) {
@@ -53,10 +48,47 @@ TEST(File, LeavesNothingHalfWritten) {
     const PendingFile pending(path);
     (void)folder.file(pending.temporary().filename().string(), "half");
     EXPECT_EQ(pending.temporary().extension(), ".csv");
-    EXPECT_EQ(count(folder.path()), 2u);
+    EXPECT_EQ(folder.count(), 2u);
   }
   EXPECT_EQ(read_file(path), "old");
-  EXPECT_EQ(count(folder.path()), 1u);
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+TEST(File, IsWrittenInPartsAndAnywhere) {
+  const Folder folder;
+  PendingFile pending(folder.at("parts.bin"));
+  pending.write("0123");
+  pending.write("4567");
+  EXPECT_TRUE(pending.write_at(6, "abc"));
+  EXPECT_EQ(pending.size(), 9u);
+  std::string back(5, '-');
+  EXPECT_EQ(pending.read_at(5, back), 4u);
+  EXPECT_EQ(back, "5abc-");
+  EXPECT_TRUE(pending.resize(3));
+  pending.write("!");
+  pending.commit();
+  EXPECT_EQ(read_file(folder.at("parts.bin")), "012!");
+}
+
+// A full disk: whatever fits or does not, the old file or the new one is there, and nothing beside it.
+TEST(File, ThatCannotBeWrittenLeavesTheOldOne) {
+  const Folder folder;
+  const std::string content(1000, 'n');
+  for (const std::size_t room : {0u, 1u, 512u, 999u}) {
+    const fs::path path = folder.file("kept.csv", "old");
+    const test::FileSizeLimit full(room);
+    EXPECT_EQ(rejection([&] { write_file(path, content); }), path.string() + ": cannot be written. File too large");
+    PendingFile pending(path);
+    EXPECT_FALSE(pending.write_at(0, content));
+    EXPECT_TRUE(pending.failed());
+    EXPECT_FALSE(pending.write_at(0, "n"));  // a part that fits does not make it whole
+    EXPECT_NE(rejection([&] { pending.commit(); }).find("File too large"), std::string::npos);
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1u);
+  const test::FileSizeLimit just_enough(content.size());
+  write_file(folder.at("kept.csv"), content);
+  EXPECT_EQ(read_file(folder.at("kept.csv")), content);
 }
 
 TEST(File, PendingFilesCanAllBeRemovedAtOnce) {
@@ -74,7 +106,7 @@ TEST(File, PendingFilesCanAllBeRemovedAtOnce) {
   EXPECT_FALSE(fs::exists(first_temporary));
   EXPECT_EQ(read_file(folder.at("second.csv")), "half");
   EXPECT_EQ(read_file(other), "kept");
-  EXPECT_EQ(count(folder.path()), 2u);
+  EXPECT_EQ(folder.count(), 2u);
   // More than are kept in view are still written as ever.
   std::vector<std::unique_ptr<PendingFile>> many;
   for (int i = 0; i < 200; ++i) {
@@ -82,9 +114,9 @@ TEST(File, PendingFilesCanAllBeRemovedAtOnce) {
     (void)written(*many.back());
   }
   remove_pending_files();
-  EXPECT_LT(count(folder.path()), 2u + 200u);
+  EXPECT_LT(folder.count(), 2u + 200u);
   many.clear();
-  EXPECT_EQ(count(folder.path()), 2u);
+  EXPECT_EQ(folder.count(), 2u);
 }
 
 TEST(File, TakesRegularFilesAwayAlone) {
@@ -110,23 +142,23 @@ TEST(File, WritesThroughLinksAndIntoDevices) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST(LineFile, IsWholeAtTheEndOrThereLineByLine) {
+TEST(LineFile, IsWholeAtTheEnd) {
   const Folder folder;
-  for (const bool live : {false, true}) {
-    const fs::path path = folder.file("lines.jsonl", "old");
-    LineFile file(path, live);
+  const fs::path path = folder.file("lines.jsonl", "old");
+  {
+    LineFile file(path);
     EXPECT_TRUE(file.write("1\n"));
-    EXPECT_EQ(read_file(path), live ? "1\n" : "old");
+    EXPECT_EQ(read_file(path), "old");
     EXPECT_TRUE(file.write("2\n"));
     file.close();
     EXPECT_EQ(read_file(path), "1\n2\n");
-    EXPECT_EQ(count(folder.path()), 1u);
+    EXPECT_EQ(folder.count(), 1u);
   }
-  const fs::path path = folder.file("lines.jsonl", "old");
-  { EXPECT_TRUE(LineFile(path, false).write("half")); }
-  EXPECT_EQ(read_file(path), "old");
-  EXPECT_NE(rejection([&] { LineFile(folder.at("no/where"), true); }).find("There is no folder"), std::string::npos);
-  LineFile full("/dev/full", false);
+  { EXPECT_TRUE(LineFile(path).write("half")); }
+  EXPECT_EQ(read_file(path), "1\n2\n");
+  EXPECT_EQ(folder.count(), 1u);
+  EXPECT_NE(rejection([&] { LineFile(folder.at("no/where")); }).find("There is no folder"), std::string::npos);
+  LineFile full("/dev/full");
   EXPECT_TRUE(full.write("lost\n"));
   EXPECT_EQ(rejection([&] { full.close(); }), "/dev/full: could not be written to its end. Is the disk full?");
 }

@@ -2,18 +2,26 @@
 
 #include <fmt/format.h>
 #include <matio.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/child.hpp"
+#include "robomill/io/descriptor.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/hdf5_input.hpp"
+#include "robomill/io/mat_layout.hpp"
 
 namespace robomill::io {
 namespace {
@@ -27,11 +35,30 @@ std::mutex& library() {
   return mutex;
 }
 
-/// zlib packs at most some thousand to one: a variable that claims more is a broken one, and must not be allocated.
-constexpr double most_packed = 1100.0;
-
 /// Beyond what is in use already and what the file's size asks for [bytes].
 constexpr std::size_t most_memory = std::size_t{64} << 20;
+
+/// To read a file in; a second more a megabyte.
+constexpr std::chrono::seconds shortest_time(30);
+
+/// Version 7.3 is an HDF5 file behind a header of version 5; without that header it is one too.
+bool is_hdf5(std::string_view content) {
+  constexpr std::size_t version = 124;
+  const std::string_view words = content.size() < 128 ? std::string_view() : content.substr(version, 4);
+  return words == std::string_view("\0\2IM", 4) || words == std::string_view("\2\0MI", 4) ||
+         content.starts_with("\x89HDF\r\n\x1a\n");
+}
+
+/// All that was written into memory; less where that could not be read.
+std::string content_of(const Descriptor& memory) {
+  struct stat status = {};
+  if (::fstat(memory.get(), &status) != 0) return {};
+  std::string out(static_cast<std::size_t>(status.st_size), '\0');
+  std::size_t count = 0;
+  if (read_all_at(memory.get(), out, 0, count) != 0) return {};
+  out.resize(count);
+  return out;
+}
 
 /// How the child's answer begins.
 constexpr char answered = '+', rejected = '-';
@@ -91,16 +118,12 @@ Eigen::MatrixXd matrix(matio_classes type, const void* data, Eigen::Index rows, 
 }
 
 /// Whether a variable is a matrix of numbers; one that claims more than its file can hold is rejected.
-bool is_matrix(const matvar_t& variable, const std::string& file, double file_bytes) {
+bool is_matrix(const matvar_t& variable, const std::string& file, std::size_t file_bytes) {
   const std::size_t width = bytes_of(variable.class_type);
   if (width == 0 || variable.name == nullptr || variable.rank != 2 || variable.isLogical != 0) return false;
-  const double bytes = static_cast<double>(variable.dims[0]) * static_cast<double>(variable.dims[1]) *
-                       static_cast<double>(width) * (variable.isComplex != 0 ? 2.0 : 1.0);
-  if (bytes > most_packed * file_bytes) {
-    throw InvalidInput(file, fmt::format("variable {} says that it holds {} x {} values, more than the file can",
-                                         variable.name, variable.dims[0], variable.dims[1]));
-  }
-  return bytes > 0.0;
+  require_held(file, variable.name, variable.dims[0], variable.dims[1], variable.isComplex != 0 ? 2 * width : width,
+               file_bytes);
+  return variable.dims[0] > 0 && variable.dims[1] > 0;
 }
 
 MatVariable converted(const matvar_t& variable, const std::string& file) {
@@ -120,13 +143,18 @@ MatVariable converted(const matvar_t& variable, const std::string& file) {
   return out;
 }
 
-std::vector<MatVariable> read_variables(const std::filesystem::path& path, double file_bytes) {
-  const std::string file = path.string();
+/// Of version 4 or 5.
+/// @param count  of variables of any kind in the file; 0: not known
+std::vector<MatVariable> read_variables(const std::string& file, std::size_t file_bytes, std::size_t count) {
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (!mat) throw InvalidInput(file, "is no MAT file");
   std::vector<MatVariable> out;
-  while (true) {
+  for (std::size_t i = 0;; ++i) {
     const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
+    if (!variable && i < count) {
+      throw InvalidInput(file, fmt::format("variable {} cannot be read, nor what follows it", i + 1),
+                         "Is the file damaged, or does it hold objects? Save the numbers alone");
+    }
     if (!variable) break;
     if (!is_matrix(*variable, file, file_bytes)) continue;
     if (Mat_VarReadDataAll(mat.get(), variable.get()) != 0) {
@@ -158,13 +186,19 @@ std::string pack(const std::vector<MatVariable>& variables) {
 
 std::vector<MatVariable> unpack(std::string_view bytes) {
   std::vector<MatVariable> out;
+  // A damaged file may have made the child say anything.
   const auto take = [&bytes](void* to, std::size_t count) {
+    if (count > bytes.size()) throw std::length_error("less than it says");
     if (count > 0) std::memcpy(to, bytes.data(), count);
     bytes.remove_prefix(count);
   };
   while (!bytes.empty()) {
     std::array<Eigen::Index, 4> sizes{};
     take(sizes.data(), sizeof(sizes));
+    const auto held = static_cast<Eigen::Index>(bytes.size());
+    const bool makes_sense =
+        std::ranges::all_of(sizes, [held](Eigen::Index size) { return size >= 0 && size <= held; });
+    if (!makes_sense || (sizes[1] > 0 && sizes[2] > held / sizes[1])) throw std::length_error("more than it has");
     MatVariable variable{.name = std::string(static_cast<std::size_t>(sizes[0]), ' '), .re = {}};
     take(variable.name.data(), variable.name.size());
     variable.re.resize(sizes[1], sizes[2]);
@@ -180,26 +214,66 @@ std::vector<MatVariable> unpack(std::string_view bytes) {
 }  // namespace
 
 std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
-  const std::size_t file_bytes = read_file(path).size();
+  const std::string content = read_file(path);
+  const std::size_t file_bytes = content.size();
+  const auto layout = mat_layout(content);
+  if (layout && !layout->whole) {
+    throw InvalidInput(path.string(), fmt::format("ends within its variable {}", layout->variables + 1),
+                       "Was it cut off while it was written or copied?");
+  }
+  const bool of_hdf5 = is_hdf5(content);
+  // What matio cannot read it takes for zeros: it gets the file from memory, into which all of it was read.
+  const Descriptor memory(of_hdf5 ? -1 : ::memfd_create("robomill", MFD_CLOEXEC));
+  const std::string place = fmt::format("/proc/self/fd/{}", memory.get());
+  if (!of_hdf5 && write_all(memory.get(), content) != 0) {
+    throw InvalidInput(path.string(), "cannot be read", "Is there enough memory?");
+  }
   const std::lock_guard lock(library());
   // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
   // for gigabytes.
-  const auto packed = run_in_child(most_memory + 64 * file_bytes, [&]() -> std::string {
+  const auto read = [&]() -> std::string {
     try {
-      return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
+      return answered + pack(of_hdf5 ? read_hdf5_matrices(content, place)
+                                     : read_variables(place, file_bytes, layout ? layout->variables : 0));
     } catch (const InvalidInput& error) {
-      return rejected + error.parts().rule;
+      return rejected + error.parts().rule + '\n' + error.parts().hint;
     }
-  });
+  };
+  const ChildLimits limits = {.more_memory_bytes = most_memory + 64 * file_bytes,
+                              .time = shortest_time + std::chrono::milliseconds(file_bytes / 1000),
+                              .lent = memory.get(),
+                              .more_files = of_hdf5 ? 0 : 1};
+  const auto packed = run_in_child(limits, read);
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
-  if (packed->front() == rejected) throw InvalidInput(path.string(), packed->substr(1));
-  return unpack(std::string_view(*packed).substr(1));
+  if (packed->front() == rejected) {
+    const std::size_t hint = packed->find('\n');
+    throw InvalidInput(path.string(), packed->substr(1, hint - 1), packed->substr(hint + 1));
+  }
+  try {
+    return unpack(std::string_view(*packed).substr(1));
+  } catch (const std::length_error&) {
+    throw InvalidInput(path.string(), "is a damaged MAT file");
+  }
+}
+
+bool mat_seems_to_have(const std::filesystem::path& path, const std::string& name, std::size_t longest_bytes) {
+  std::string content;
+  try {
+    content = read_file(path, longest_bytes);
+  } catch (const InvalidInput&) {
+    return false;
+  }
+  if (is_hdf5(content)) return content.find(name) != std::string::npos;
+  const std::vector<std::string> names = mat_names(content);
+  return std::ranges::find(names, name) != names.end();
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {
   const std::lock_guard lock(library());
   PendingFile pending(path);
-  const std::string place = pending.temporary().string();
+  // The library does not report a write that fails: it writes into memory, where none does.
+  const Descriptor memory(::memfd_create("robomill", MFD_CLOEXEC));
+  const std::string place = fmt::format("/proc/self/fd/{}", memory.get());
   // A header of our own, since the library's carries the date.
   MatFile mat(Mat_CreateVer(place.c_str(), "MATLAB 5.0 MAT-file, robomill", MAT_FT_MAT5), &Mat_Close);
   if (!mat) throw InvalidInput(path.string(), "cannot be written");
@@ -218,6 +292,12 @@ void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>
     }
   }
   if (Mat_Close(mat.release()) != 0) throw InvalidInput(path.string(), "cannot be written");
+  const std::string content = content_of(memory);
+  const auto layout = mat_layout(content);
+  if (!layout || !layout->whole || layout->variables != variables.size()) {
+    throw InvalidInput(path.string(), "cannot be written", "Is there enough memory?");
+  }
+  pending.write(content);
   pending.commit();
 }
 

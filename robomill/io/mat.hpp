@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,12 @@ struct MatVariable {
 /// left out.
 /// @throws InvalidInput if the file is missing, empty or no MAT file, or a variable cannot be read
 [[nodiscard]] std::vector<MatVariable> read_mat(const std::filesystem::path& path);
+
+/// Whether a MAT file seems to have a variable of that name: by the first bytes of each, or of version 7.3 where the
+/// name stands in the file, without the libraries, which a damaged file can bring down or keep busy. False where it
+/// cannot be read, or is longer than that.
+[[nodiscard]] bool mat_seems_to_have(const std::filesystem::path& path, const std::string& name,
+                                     std::size_t longest_bytes);
 
 /// Writes version 5, compressed, whole or not at all. @throws InvalidInput if the place cannot be written
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables);

@@ -1,18 +1,27 @@
 #include "robomill/io/mat.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <matio.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/child.hpp"
+#include "robomill/io/descriptor.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/mat_layout.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {
@@ -68,6 +77,45 @@ TEST(Mat, GivesBackWhatItWrote) {
   const std::string once = read_file(folder.at("a.mat"));
   write_mat(folder.at("b.mat"), written);
   EXPECT_EQ(read_file(folder.at("b.mat")), once);
+}
+
+TEST(Mat, ThatCannotBeWrittenLeavesTheOldOne) {
+  const Folder folder;
+  const MatVariable one{.name = "x", .re = Eigen::MatrixXd::Random(300, 2)};
+  write_mat(folder.at("a.mat"), {one});
+  const std::size_t size = read_file(folder.at("a.mat")).size();
+  for (const std::size_t room : {std::size_t{0}, std::size_t{1}, std::size_t{128}, size / 2, size - 1}) {
+    const std::filesystem::path path = folder.file("a.mat", "old");
+    const test::FileSizeLimit full(room);
+    EXPECT_NE(rejection([&] { write_mat(path, {one}); }).find("a.mat: cannot be written"), std::string::npos) << room;
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1u);
+}
+
+// Of version 4, 5 and 7.3, wherever it was cut but between two variables.
+TEST(Mat, ThatWasCutOffIsRejected) {
+  const Folder folder;
+  for (const mat_ft version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
+    write_foreign(folder.at("a.mat"), version, MAT_COMPRESSION_NONE);
+    const std::string whole = read_file(folder.at("a.mat"));
+    const std::size_t all = read_mat(folder.at("a.mat")).size();
+    int between = 0;
+    for (std::size_t size = whole.size() - 1; size > 150; size -= std::max<std::size_t>(1, whole.size() / 300)) {
+      const auto cut = folder.file("cut.mat", std::string_view(whole).substr(0, size));
+      try {
+        EXPECT_LE(read_mat(cut).size(), all);
+        ++between;
+      } catch (const InvalidInput&) {
+      }
+    }
+    EXPECT_LE(between, 4) << version;
+    const auto half = folder.file("half.mat", std::string_view(whole).substr(0, whole.size() - 5));
+    EXPECT_NE(rejection([&] { static_cast<void>(read_mat(half)); })
+                  .find(version == MAT_FT_MAT73 ? "is a damaged HDF5 file, or one that was cut off"
+                                                : "ends within its variable"),
+              std::string::npos);
+  }
 }
 
 TEST(Mat, ReadsEveryVersion) {
@@ -129,8 +177,85 @@ TEST(Mat, SurvivesMutations) {
   }
 }
 
+TEST(Mat, SeemsToHaveWhatItHas) {
+  const test::Folder place;
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(20, 1.0, 20.0);
+  const std::string long_name(63, 'n');
+  write_mat(place.at("a.mat"), {{.name = "H", .re = values, .im = values},
+                                {.name = "frequency_hz", .re = values},
+                                {.name = long_name, .re = values}});
+  constexpr std::size_t enough = std::size_t{1} << 20;
+  for (const char* name : {"H", "frequency_hz"})
+    EXPECT_TRUE(mat_seems_to_have(place.at("a.mat"), name, enough)) << name;
+  EXPECT_TRUE(mat_seems_to_have(place.at("a.mat"), long_name, enough));
+  for (const char* name : {"", "h", "frequency", "hz"}) {
+    EXPECT_FALSE(mat_seems_to_have(place.at("a.mat"), name, enough)) << name;
+  }
+  EXPECT_FALSE(mat_seems_to_have(place.at("a.mat"), "H", 100));
+  EXPECT_FALSE(mat_seems_to_have(place.at("none.mat"), "H", enough));
+  // Of every level, packed or not, and cut off or changed anywhere: an answer.
+  for (const mat_ft level : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
+    mat_t* mat = Mat_CreateVer(place.at("b.mat").c_str(), nullptr, level);
+    ASSERT_NE(mat, nullptr);
+    std::array<std::size_t, 2> dims = {20, 1};
+    std::vector<double> numbers(values.begin(), values.end());
+    matvar_t* variable = Mat_VarCreate("frequency_hz", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims.data(), numbers.data(), 0);
+    EXPECT_EQ(Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE), 0);
+    Mat_VarFree(variable);
+    Mat_Close(mat);
+    EXPECT_TRUE(mat_seems_to_have(place.at("b.mat"), "frequency_hz", enough)) << level;
+    EXPECT_FALSE(mat_seems_to_have(place.at("b.mat"), "force", enough)) << level;
+  }
+  for (const char* file : {"a.mat", "b.mat"}) {
+    const std::string whole = read_file(place.at(file));
+    for (std::size_t at = 0; at < std::min<std::size_t>(whole.size(), 600); ++at) {
+      static_cast<void>(mat_names(whole.substr(0, at)));
+      for (const char changed : {'\0', '\xff'}) {
+        std::string content = whole;
+        content[at] = changed;
+        static_cast<void>(mat_names(content));
+      }
+    }
+  }
+}
+
+TEST(Child, IsKilledWhereItsAnswerNeverEnds) {
+  const std::chrono::milliseconds moment(100);
+  const auto forever = [] {
+    for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  EXPECT_EQ(run_in_child({.more_memory_bytes = 1 << 26, .time = moment},
+                         [&]() -> std::string {
+                           forever();
+                           return "done";
+                         }),
+            std::nullopt);
+  // Its end of the way back is closed, and it lives on.
+  EXPECT_EQ(run_in_child({.more_memory_bytes = 1 << 26, .time = moment},
+                         [&]() -> std::string {
+                           ::close_range(3, ~0U, 0);
+                           forever();
+                           return "done";
+                         }),
+            std::nullopt);
+  EXPECT_EQ(run_in_child({.more_memory_bytes = 1 << 20}, [] { return std::string((1 << 20) + 1, 'a'); }), std::nullopt);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);  // none is left
+}
+
+TEST(Child, HasNoneOfItsParentsFiles) {
+  const test::Folder place;
+  const Descriptor held(::open(place.file("held.txt", "x").c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor lent(::open(place.file("lent.txt", "x").c_str(), O_RDONLY | O_CLOEXEC));
+  const auto look = [&]() -> std::string {
+    return std::string(::fcntl(held.get(), F_GETFD) < 0 ? "none" : "held") +
+           (::fcntl(lent.get(), F_GETFD) < 0 ? " none" : " lent");
+  };
+  EXPECT_EQ(run_in_child({.more_memory_bytes = 1 << 26}, look), "none none");
+  EXPECT_EQ(run_in_child({.more_memory_bytes = 1 << 26, .lent = lent.get()}, look), "none lent");
+}
+
 TEST(Child, HandsBackWhatWasSaidAndSurvivesItsDeath) {
-  constexpr std::size_t memory = std::size_t{1} << 26;
+  constexpr ChildLimits memory = {.more_memory_bytes = std::size_t{1} << 26};
   EXPECT_EQ(run_in_child(memory, [] { return std::string(1 << 20, 'a'); }), std::string(1 << 20, 'a'));
   EXPECT_EQ(run_in_child(memory, [] { return std::string(); }), "");
   EXPECT_EQ(run_in_child(memory, []() -> std::string { throw std::runtime_error("no"); }), std::nullopt);

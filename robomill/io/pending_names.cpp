@@ -43,6 +43,11 @@ void forget_pending(const std::filesystem::path& path) noexcept {
   }
 }
 
+bool is_pending(const std::filesystem::path& path) noexcept {
+  const std::scoped_lock lock(changing);
+  return std::ranges::any_of(names, [&](const Name& name) { return name.used && path.native() == name.path.data(); });
+}
+
 void remove_pending_files() noexcept {
   for (const Name& name : names) {
     if (name.used) ::unlink(name.path.data());

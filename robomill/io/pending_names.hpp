@@ -12,6 +12,9 @@ void register_pending(const std::filesystem::path& path) noexcept;
 /// It has been moved to its place, or removed.
 void forget_pending(const std::filesystem::path& path) noexcept;
 
+/// Whether it is one of them, by its name.
+[[nodiscard]] bool is_pending(const std::filesystem::path& path) noexcept;
+
 /// Removes all of them: async-signal-safe.
 ROBOMILL_API void remove_pending_files() noexcept;
 

@@ -1,7 +1,6 @@
 #include "robomill/io/records.hpp"
 
 #include <fmt/format.h>
-#include <sndfile.h>
 
 #include <algorithm>
 #include <charconv>
@@ -16,6 +15,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/mat.hpp"
 #include "robomill/io/si.hpp"
+#include "robomill/io/sound_file.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
@@ -222,24 +222,22 @@ Record read_uff_record(const Path& path) {
 }
 
 Record read_wav_record(const Path& path, double scale) {
-  (void)read_file(path);  // says what is wrong with a missing or empty one
-  SF_INFO info{};
-  const std::unique_ptr<SNDFILE, decltype(&sf_close)> sound(sf_open(path.c_str(), SFM_READ, &info), &sf_close);
-  if (!sound) throw InvalidInput(path.string(), std::string("is no sound file: ") + sf_strerror(nullptr));
-  if (info.channels < 1 || info.samplerate < 1) throw InvalidInput(path.string(), "has no channel or no sample rate");
-  const auto channels = static_cast<std::size_t>(info.channels);
-  Record record{.file = path, .sample_rate_hz = static_cast<double>(info.samplerate), .names = {}, .columns = {}};
+  const SoundFile file = open_sound(path);
+  const auto channels = static_cast<std::size_t>(file.info.channels);
+  Record record{.file = path, .sample_rate_hz = static_cast<double>(file.info.samplerate), .names = {}, .columns = {}};
+  if (!file.note.empty()) record.notes.push_back(file.note);
   record.names.resize(channels);
   std::vector<std::vector<double>> columns(channels);
   // In blocks: what the header says of the length may be wrong.
   const std::size_t block_frames = std::max<std::size_t>(1, 8192 / channels);
   std::vector<double> block(block_frames * channels);
   sf_count_t frames = 0;
-  while ((frames = sf_readf_double(sound.get(), block.data(), static_cast<sf_count_t>(block_frames))) > 0) {
+  while ((frames = sf_readf_double(file.sound.get(), block.data(), static_cast<sf_count_t>(block_frames))) > 0) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(frames) * channels; ++i) {
       columns[i % channels].push_back(scale * block[i]);
     }
   }
+  require_read(file);
   if (columns.front().empty()) throw InvalidInput(path.string(), "holds no samples");
   for (const std::vector<double>& column : columns) record.columns.push_back(vector(column));
   return record;

@@ -166,6 +166,30 @@ TEST(Records, ReadsWavWithItsScale) {
             std::string::npos);
 }
 
+TEST(Records, SaysThatASoundFileWasCutOff) {
+  const Folder folder;
+  write_wav(folder.at("a.wav"), SF_FORMAT_PCM_16, std::vector<double>(20480, 0.5), 2);
+  EXPECT_TRUE(read_record(folder.at("a.wav")).notes.empty());
+  const std::string whole = read_file(folder.at("a.wav"));
+  const auto cut = folder.file("cut.wav", std::string_view(whole).substr(0, whole.size() - 20480));
+  const Record record = read_record(cut);
+  ASSERT_EQ(record.notes.size(), 1u);
+  EXPECT_EQ(record.notes.front(),
+            "Warning: " + cut.string() + " holds 0.5 s of the 1 s that its header states: it was cut off");
+  EXPECT_EQ(record.columns.front().size(), 5120);
+  // A recorder that was not stopped leaves a length of all that fits, or of none.
+  const auto stated = [&](char byte) {
+    std::string content = whole;
+    std::fill_n(content.begin() + static_cast<std::ptrdiff_t>(whole.find("data")) + 4, 4, byte);
+    return folder.file("stated.wav", content);
+  };
+  EXPECT_TRUE(read_record(stated('\xFF')).notes.empty());
+  EXPECT_NE(rejection([&] {
+              static_cast<void>(read_record(stated('\0')));
+            }).find("states no samples, and 40960 bytes of them follow"),
+            std::string::npos);
+}
+
 TEST(Records, SaysWhatIsWrong) {
   const Folder folder;
   const auto says = [&](const std::string& name, const std::string& content) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "robomill/io/sample_source.hpp"
@@ -17,13 +18,15 @@ namespace robomill::io {
 class ByteReader {
  public:
   /// @param owned  close it at the end
-  ByteReader(int descriptor, bool owned, const std::atomic<bool>* stop)
-      : descriptor_(descriptor), owned_(owned), stop_(stop) {}
+  /// @param where  whatever names it in errors
+  ByteReader(int descriptor, bool owned, const std::atomic<bool>* stop, std::string where)
+      : descriptor_(descriptor), owned_(owned), stop_(stop), where_(std::move(where)) {}
   ~ByteReader();
   ByteReader(const ByteReader&) = delete;
   ByteReader& operator=(const ByteReader&) = delete;
 
   /// What has come and was not consumed; waits for more while that is less than `least`. Shorter only at the end.
+  /// @throws InvalidInput, as line() does, if the system cannot read on: that is no end
   [[nodiscard]] std::string_view wait(std::size_t least);
   /// What is there without waiting.
   [[nodiscard]] std::string_view here() const { return std::string_view(bytes_).substr(begin_); }
@@ -34,12 +37,13 @@ class ByteReader {
   [[nodiscard]] bool line_here() const;
 
  private:
+  /// False at the end.
   bool fill();
 
   int descriptor_ = -1;
   bool owned_ = false, ended_ = false;
   const std::atomic<bool>* stop_ = nullptr;
-  std::string bytes_;
+  std::string where_, bytes_;
   std::size_t begin_ = 0;
 };
 

@@ -11,10 +11,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/confinement.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/sample_alignment.hpp"
@@ -97,6 +100,7 @@ class RecordSource : public SampleSource {
   RecordSource(const std::filesystem::path& path, const SampleColumns& columns) {
     Record record = read_record(path, {.time = {}, .scale = columns.scale});
     sample_rate_hz_ = record.sample_rate_hz;
+    notes_ = record.notes;
     check_rate(sample_rate_hz_, columns.sample_rate_hz, 1e-3, path.string());
     const std::vector<std::size_t> pick = pick_columns(columns, record.names, record.columns.size(), path.string());
     for (const std::size_t column : pick) columns_.push_back(std::move(record.columns[column]));
@@ -178,7 +182,9 @@ bool ByteReader::fill() {
     bytes_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (count > 0) return true;
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    break;
+    if (count == 0) break;
+    ended_ = true;
+    throw InvalidInput(where_, "cannot be read to its end", std::strerror(errno));
   }
   ended_ = true;
   return false;
@@ -288,16 +294,19 @@ std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path, co
                            "Recordings are .wav, .csv, .txt, .mat and .uff; others need --format f32, i16 or csv");
     }
   }
-  (void)open_file(path);                                              // says what is wrong with a missing one
+  std::error_code ignored;
+  // Says what is wrong with a missing one. A pipe is opened once: its writer would see the first reader go.
+  if (is_confined() || !std::filesystem::is_fifo(path, ignored)) (void)open_file(path);
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);  // NOLINT: open is variadic
   if (descriptor < 0) throw InvalidInput(path.string(), std::string("cannot be read: ") + std::strerror(errno));
-  return open_bytes(std::make_unique<ByteReader>(descriptor, true, stop), path.string(), columns, format, true);
+  return open_bytes(std::make_unique<ByteReader>(descriptor, true, stop, path.string()), path.string(), columns, format,
+                    true);
 }
 
 std::unique_ptr<SampleSource> open_sample_stream(int descriptor, const std::string& where, const SampleColumns& columns,
                                                  RawFormat format, const std::atomic<bool>* stop) {
   columns.validate();
-  return open_bytes(std::make_unique<ByteReader>(descriptor, false, stop), where, columns, format, false);
+  return open_bytes(std::make_unique<ByteReader>(descriptor, false, stop, where), where, columns, format, false);
 }
 
 }  // namespace robomill::io

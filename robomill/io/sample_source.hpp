@@ -61,6 +61,8 @@ class ROBOMILL_API SampleSource {
   [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
   /// Magnitude at which its converter clips, in the unit of the samples; 0: unknown.
   [[nodiscard]] double full_scale() const { return full_scale_; }
+  /// What a reader must know: that a file was cut off, data sets skipped, units converted.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   /// Rows of text that held something else than their numbers, and the line of the first.
   [[nodiscard]] std::uint64_t unreadable_rows() const { return unreadable_rows_; }
   [[nodiscard]] std::uint64_t first_unreadable_line() const { return first_unreadable_line_; }
@@ -69,6 +71,7 @@ class ROBOMILL_API SampleSource {
 
  protected:
   double sample_rate_hz_ = 0.0, full_scale_ = 0.0;
+  std::vector<std::string> notes_;
   std::uint64_t unreadable_rows_ = 0, first_unreadable_line_ = 0, misaligned_frames_ = 0;
 };
 

@@ -3,10 +3,14 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sndfile.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -15,6 +19,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/mat.hpp"
 #include "testing/support.hpp"
 
@@ -160,6 +165,39 @@ TEST(SampleSource, IntegersAreScaledAndClipAtTheirFullScale) {
   EXPECT_EQ(all(*source), (std::vector<float>{0.0F, 25.0F, -50.0F, static_cast<float>(full)}));
 }
 
+TEST(SampleSource, ThatCannotBeWrittenLeavesTheOldOne) {
+  const test::Folder folder;
+  const std::vector<float> samples(4000, 0.5F);
+  write_wav(folder.at("a.wav"), samples, 2, 5000.0);
+  const std::size_t size = read_file(folder.at("a.wav")).size();
+  for (const std::size_t room : {std::size_t{0}, std::size_t{20}, size / 2, size - 1}) {
+    const auto path = folder.file("a.wav", "old");
+    const test::FileSizeLimit full(room);
+    EXPECT_NE(test::rejection([&] { write_wav(path, samples, 2, 5000.0); }).find("a.wav: cannot be written"),
+              std::string::npos)
+        << room;
+    EXPECT_EQ(read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+// What its file says of a recording comes with it.
+TEST(SampleSource, SaysThatARecordingWasCutOff) {
+  const test::Folder folder;
+  write_wav(folder.at("a.wav"), std::vector<float>(4000, 0.5F), 1, 4000.0);
+  const std::string whole = read_file(folder.at("a.wav"));
+  EXPECT_TRUE(open_samples(folder.at("a.wav"), named({"1"}))->notes().empty());
+  const auto cut = folder.file("cut.wav", std::string_view(whole).substr(0, whole.size() - 8000));
+  const auto source = open_samples(cut, named({"1"}));
+  ASSERT_EQ(source->notes().size(), 1U);
+  EXPECT_NE(source->notes().front().find("holds 0.5 s of the 1 s that its header states"), std::string::npos);
+  EXPECT_EQ(all(*source).size(), 2000U);
+  for (std::size_t bytes = 1; bytes <= 4; ++bytes) {  // of the last frame
+    const auto short_one = folder.file("cut.wav", std::string_view(whole).substr(0, whole.size() - bytes));
+    EXPECT_EQ(open_samples(short_one, named({"1"}))->notes().size(), 1U) << bytes;
+  }
+}
+
 TEST(SampleSource, ReadsMat) {
   const test::Folder folder;
   write_mat(folder.at("m.mat"), {{"ax", Eigen::Vector3d(1, 2, 3)},
@@ -212,6 +250,51 @@ TEST(SampleSource, TakesBytesAsTheyCome) {
   const Pipe text("ax,ay\n1,2\n3,4\n", 1);
   EXPECT_EQ(all(*open_sample_stream(text.end(), "standard input", named({"ay"}), RawFormat::automatic)),
             (std::vector<float>{2, 4}));
+}
+
+// A peer that closes with bytes unread resets the connection: what came is no whole recording.
+TEST(SampleSource, AReadThatFailsIsNoEnd) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  ASSERT_EQ(::write(ends[1], "ax,ay\n1,2\n3,4\n", 14), 14);
+  ASSERT_EQ(::write(ends[0], "unread", 6), 6);
+  ::close(ends[1]);
+  std::vector<float> samples;
+  const std::string text = test::rejection([&] {
+    const auto source = open_sample_stream(ends[0], "standard input", named({"ax", "ay"}), RawFormat::csv);
+    SampleBlock block;
+    while (source->next(1, block)) samples.insert(samples.end(), block.samples.begin(), block.samples.end());
+  });
+  ::close(ends[0]);
+  EXPECT_EQ(text, "standard input: cannot be read to its end. Connection reset by peer");
+  EXPECT_EQ(samples, (std::vector<float>{1, 2, 3, 4}));
+}
+
+// A writer that writes at once would be ended by a first reader that goes.
+TEST(SampleSource, OpensANamedPipeOnce) {
+  const test::Folder folder;
+  const std::filesystem::path pipe = folder.at("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  constexpr int rows = 5000;
+  int written = 0;
+  std::atomic<bool> done{false};
+  std::jthread writer([&] {
+    int end = -1;
+    while ((end = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) < 0) {
+    }
+    ::fcntl(end, F_SETFL, 0);  // from here on it waits
+    while (written < rows && ::write(end, "1,2\n", 4) == 4) ++written;
+    ::close(end);
+    while (!done) ::close(::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));  // a second reader would wait
+  });
+  std::vector<float> samples;
+  EXPECT_NO_THROW(samples = read(pipe, named({"1"})));
+  done = true;
+  writer.join();
+  std::signal(SIGPIPE, before);
+  EXPECT_EQ(written, rows);
+  EXPECT_EQ(samples.size(), static_cast<std::size_t>(rows));
 }
 
 TEST(SampleSource, NumbersPickAmongRawColumns) {

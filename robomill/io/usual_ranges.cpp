@@ -97,7 +97,10 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"az_g", 1e-4, 1e5, largest},
     // force coefficients; of polynomials in the position angle no coefficient has a usual range of its own
     {"tangential_n_per_mm2", 5, 12'000, largest},
-    {"radial_n_per_mm2", 1, 12'000, largest},
+    {"radial_n_per_mm2", 1, 12'000, largest,
+     "A tooth is mostly pushed out of what it cuts: is the sign that of another convention? A high rake angle, fibres "
+     "or "
+     "a fit to few feeds may pull it in"},
     {"axial_n_per_mm2", 1, 12'000, largest},
     {"tangential_edge_n_per_mm", 0.1, 300, largest},
     {"radial_edge_n_per_mm", 0.1, 300, largest},
@@ -391,6 +394,9 @@ std::optional<Unusual> unusual_value(std::string_view key, std::span<const doubl
                                        unit.empty() ? "" : " ", unit),
                    .hint = std::move(hint)};
   };
+  if (!row->if_negative.empty() && values.size() == 1 && values[0] < 0.0) {
+    return unusual(values[0], std::string(row->if_negative));
+  }
   const double most = *std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
   if (row->compared == angles && most != 0.0 && look_like_radians(values)) {
     return Unusual{.value = most, .rule = "looks like radians", .hint = "The key is in degrees"};

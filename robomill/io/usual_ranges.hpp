@@ -11,8 +11,8 @@
 
 namespace robomill::io {
 
-/// What of a key's value is compared with its range. Signs do not count: a key that must not be negative is an error
-/// of its reader.
+/// What of a key's value is compared with its range. Signs do not count, but of a number whose row says so: a key that
+/// must not be negative is an error of its reader.
 enum class Compared {
   each,     ///< every number of the value
   largest,  ///< of a list its largest number: a vector may have small components
@@ -25,6 +25,7 @@ struct UsualRange {
   std::string_view key;  ///< its last part, "diameter_mm", or its whole path, "tool[].length_mm"
   double lowest, highest;
   Compared compared = Compared::each;
+  std::string_view if_negative = {};  ///< the likely cause of one number below 0; empty where signs do not count
 };
 
 /// All rows.

@@ -57,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"VelocityInRad", "robot.joint_max_velocity_deg_per_s", {2.1, 2.1, 2.4}, "rad/s"},
         Mistake{"VelocityInDeg", "robot.joint_max_velocity_rad_per_s", {120, 115}, "deg/s"},
         Mistake{"PositionInDeg", "robot.joint_max_position_rad", {170}, "degrees"},
+        Mistake{"RadialThatPulls", "coefficients.radial_n_per_mm2", {-200}, "of another convention?"},
         Mistake{"CoefficientsInPa", "coefficients.tangential_n_per_mm2", {7.1e8}, "N/m^2"},
         Mistake{"CoefficientsInGpa", "coefficients.tangential_n_per_mm2", {0.71}, "GPa"},
         Mistake{"EdgeInNPerM", "coefficients.tangential_edge_n_per_mm", {13'000}, "N/m?"},

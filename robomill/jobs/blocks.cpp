@@ -9,6 +9,7 @@
 #include <limits>
 #include <tuple>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
@@ -174,6 +175,20 @@ void sum_up(ProgramBlocks& out) {
   }
 }
 
+/// By what README.md's "Cost" was measured at.
+void require_affordable_blocks(std::size_t evaluations, std::size_t blocks) {
+  constexpr double operations_of_evaluation = 3e7, bytes_of_block = 8e3, usual_evaluations = 500.0,
+                   usual_blocks = 40'000.0;
+  const auto different = static_cast<double>(evaluations), all = static_cast<double>(blocks);
+  require_affordable(
+      {.operations = operations_of_evaluation * different,
+       .bytes = bytes_of_block * all,
+       .dominant = dominant_of({{.field = "blocks of the program that differ",
+                                 .value = different,
+                                 .times_usual = different / usual_evaluations},
+                                {.field = "blocks of the program", .value = all, .times_usual = all / usual_blocks}})});
+}
+
 }  // namespace
 
 bool worse(const BlockRow& a, const BlockRow& b) {
@@ -204,6 +219,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
   out.rows.resize(forces.program->blocks.size());
   const std::vector<std::size_t> first = classes_of(forces, options, out.rows);
   out.evaluations = first.size();
+  require_affordable_blocks(first.size(), out.rows.size());
   const std::vector<Shared> shared = evaluate_classes(forces, first, dynamics, options, progress);
   for (BlockRow& row : out.rows) {
     if (!row.cuts) continue;

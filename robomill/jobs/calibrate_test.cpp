@@ -56,6 +56,13 @@ TEST(RunCalibrate, IsTheCalibrationOfItsRecordings) {
   EXPECT_NEAR(back.options.threshold, expected.options.threshold, 1e-12 * expected.options.threshold);
   EXPECT_EQ(back.options.alarm_below, expected.options.alarm_below);
 
+  EXPECT_TRUE(found.monitor.notes.empty());
+  const auto cut = folder.at("rec3.wav");
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 4000);
+  const std::vector<std::string> notes = run_calibrate(folder.at("recordings.toml"), 2).monitor.notes;
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("rec3.wav"), std::string::npos) << notes[0];
+
   CalibrateResult failed = found;
   failed.calibration.status = monitor::Calibration::Status::not_verified;
   EXPECT_EQ(test::field_of([&] { static_cast<void>(calibrated_toml(failed, folder.at("monitor.toml"))); }),

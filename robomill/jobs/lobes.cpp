@@ -5,6 +5,8 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/toml_file.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/files/posture_json.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/stability/files/lobes_csv.hpp"
@@ -12,6 +14,33 @@
 #include "robomill/stability/files/lobes_object.hpp"
 
 namespace robomill::jobs {
+namespace {
+
+/// The chart and what the file asks for beside it.
+void compute_asked(const LobesJob& job, LobesJobResult& result, Progress& progress) {
+  LobesFile& cut = result.cut;
+  if (cut.sweep != stability::SweptParameter::axial_depth) {
+    if (job.compare) throw cut.document->reject("lobes.sweep", "does not go with a comparison of methods");
+    result.sweep = stability::compute_sweep(cut.problem, sweep_options(cut), progress);
+    return;
+  }
+  if (job.compare) {
+    constexpr int most_speeds = 60;
+    const int speeds = std::min(cut.options.grid[0], most_speeds);
+    result.comparison = stability::compare_methods(cut.problem, cut.options, speeds, progress);
+    return;
+  }
+  result.lobes = stability::compute_lobes(cut.problem, cut.options, progress);
+  if (cut.uncertainty.samples > 0) {
+    if (!cut.band_note.empty()) cut.notes.push_back(cut.band_note);
+    result.uncertain = stability::uncertain_limits(cut.problem, cut.options, cut.uncertainty, progress);
+  }
+  if (cut.surface_grid[0] > 0) {
+    result.surface = stability::surface_map(cut.problem, cut.options, cut.surface_grid, progress);
+  }
+}
+
+}  // namespace
 
 LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   LobesJobResult result;
@@ -24,26 +53,8 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
     if (const std::string text = other_structure_text(plan, cut); !text.empty()) cut.notes.push_back(text);
   }
   cut.options.points = job.points;
-  if (cut.sweep != stability::SweptParameter::axial_depth) {
-    if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
-    result.sweep = stability::compute_sweep(cut.problem, sweep_options(cut), progress);
-    return result;
-  }
-  if (job.compare) {
-    constexpr int most_speeds = 60;
-    const int speeds = std::min(cut.options.grid[0], most_speeds);
-    result.comparison = stability::compare_methods(cut.problem, cut.options, speeds, progress);
-    return result;
-  }
-  result.lobes = stability::compute_lobes(cut.problem, cut.options, progress);
   cut.uncertainty.seed = job.seed;
-  if (cut.uncertainty.samples > 0) {
-    if (!cut.band_note.empty()) cut.notes.push_back(cut.band_note);
-    result.uncertain = stability::uncertain_limits(cut.problem, cut.options, cut.uncertainty, progress);
-  }
-  if (cut.surface_grid[0] > 0) {
-    result.surface = stability::surface_map(cut.problem, cut.options, cut.surface_grid, progress);
-  }
+  with_words_of(cut, [&] { compute_asked(job, result, progress); });
   return result;
 }
 

@@ -140,6 +140,11 @@ TEST(RunLobes, SweepsTheLead) {
   EXPECT_NEAR(result.sweep->points[0].axial_depth_m, -10.0 * units::deg, 1e-12);
   EXPECT_LT(result.sweep->points[0].gain_margin, 1.0);
   EXPECT_TRUE(result.lobes.limit.empty());
+  const std::string compared = rejection([&] { static_cast<void>(run_lobes({.lobes = path, .compare = true})); });
+  EXPECT_NE(compared.find("lead.toml:"), std::string::npos) << compared;
+  EXPECT_EQ(compared.find("lead.toml"), compared.rfind("lead.toml")) << compared;
+  EXPECT_NE(compared.find(": lobes.sweep = \"lead\"; does not go with a comparison of methods"), std::string::npos)
+      << compared;
 }
 
 TEST(RunLobes, JudgesDrilling) {

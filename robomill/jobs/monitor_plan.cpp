@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
@@ -30,6 +31,12 @@ monitor::MonitorFile monitor_file(const MonitorPlan& plan) {
   file.options.channels = static_cast<int>(plan.channels.size());
   file.options.teeth = plan.teeth;
   file.options.false_alarms_per_hour = plan.false_alarms_per_hour;
+  // A spindle that turns as slowly as it should does not stand still.
+  double& min_speed_rad_per_s = file.options.min_speed_rad_per_s;
+  for (const SpeedStretch& each : plan.speeds) {
+    min_speed_rad_per_s = std::min(min_speed_rad_per_s, 0.5 * each.spindle_speed_rad_per_s);
+  }
+  min_speed_rad_per_s = std::max(min_speed_rad_per_s, monitor::slowest_min_speed_rad_per_s);
   if (plan.one_speed()) file.options.spindle_speed_rad_per_s = plan.speeds.front().spindle_speed_rad_per_s;
   return file;
 }
@@ -80,7 +87,7 @@ void MonitorPlan::validate() const {
   if (speeds.empty()) throw InvalidInput("speeds", "must hold at least one");
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     const std::string path = fmt::format("speeds[{}].", i + 1);
-    require_positive((path + "spindle_speed_rad_per_s").c_str(), speeds[i].spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", speeds[i].spindle_speed_rad_per_s);
     if (speeds[i].line < 0) throw InvalidInput(path + "line", speeds[i].line, "", "must be >= 0");
   }
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");

@@ -39,6 +39,19 @@ monitor::MonitorFile written(const MonitorPlan& plan, const test::Folder& folder
   return monitor::read_monitor(folder.file("monitor.toml", texts.toml));
 }
 
+// A tap at 20 rpm turns more slowly than what counts as a standstill otherwise.
+TEST(PlanMonitor, ASlowSpindleDoesNotStandStill) {
+  for (const auto& [slowest_rpm, min_rpm] : {std::pair{1.0, 1.0}, std::pair{20.0, 10.0}, std::pair{400.0, 30.0}}) {
+    for (const bool others : {false, true}) {
+      const test::Folder folder;
+      MonitorPlan plan = one_cut();
+      plan.speeds = {{.spindle_speed_rad_per_s = slowest_rpm * units::rpm}};
+      if (others) plan.speeds.push_back({.spindle_speed_rad_per_s = 4800.0 * units::rpm, .line = 7});
+      EXPECT_NEAR(written(plan, folder).options.min_speed_rad_per_s, min_rpm * units::rpm, 1e-12) << slowest_rpm;
+    }
+  }
+}
+
 TEST(PlanMonitor, IsReadBackAsItWasMeant) {
   const test::Folder folder;
   MonitorPlan plan = one_cut();

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/jobs/vibration_text.hpp"
 
@@ -142,16 +144,28 @@ void compare(PlanResult& result, Progress& progress) {
 void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
   const auto known = [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); };
   stability::Uncertainty& uncertainty = result.cut.uncertainty;
-  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) {
+  const bool asked = uncertainty.samples > 0;
+  if (!asked && std::ranges::any_of(result.model.modes, known)) {
     uncertainty.samples = 100;
     uncertainty.grid = {40, 30};
   }
   if (uncertainty.samples == 0) return;
-  if (!result.cut.band_note.empty()) result.notes.push_back(result.cut.band_note);
   uncertainty.seed = seed;
   // A band needs no more than three digits of each limit.
   stability::LobesOptions options = result.cut.options;
   options.tolerance = std::max(options.tolerance, 1e-4);
+  if (!asked) {
+    const Cost cost = stability::cost_of_uncertain_limits(result.cut.problem, options, uncertainty);
+    if (const std::string over = above_limit(cost); !over.empty()) {
+      result.notes.push_back(fmt::format(
+          "The band of the limit by what the fit leaves uncertain is left out: its {} samples would take {}. "
+          "[uncertainty] in {} asks for one, of 20 samples or more.",
+          uncertainty.samples, over, result.cut.path.filename().string()));
+      uncertainty.samples = 0;
+      return;
+    }
+  }
+  if (!result.cut.band_note.empty()) result.notes.push_back(result.cut.band_note);
   result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
 }
 
@@ -225,9 +239,11 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   cover_spindle(result);
-  find_limits(result, progress);
-  cover_cutter(result, progress);
-  spread(result, seed, progress);
+  with_words_of(result.cut, [&] {
+    find_limits(result, progress);
+    cover_cutter(result, progress);
+    spread(result, seed, progress);
+  });
   report_vibration(result);
   pairs(result, progress);
   turn_feed(result, progress);

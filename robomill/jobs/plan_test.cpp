@@ -11,8 +11,11 @@
 #include <numbers>
 #include <string>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/files/in_words.hpp"
+#include "robomill/modal/files/modes_files.hpp"
 #include "robomill/stability/surface_error.hpp"
 #include "testing/jobs/lobes_file.hpp"
 #include "testing/robot_modes.hpp"
@@ -418,6 +421,47 @@ dexel_mm = 0.5
   EXPECT_NE(weak.find("in line 5: 1.55 N·m over a revolution and 1.62 kW over 0.1 s"), std::string::npos) << weak;
   EXPECT_EQ(warning(2.0, 2.0), "");
   EXPECT_NE(warning(1.0, 2.0), "");
+}
+
+// What nobody asked for ends no plan.
+TEST_F(Plan, LeavesOutABandThatWouldTakeTooLong) {
+  modal::ModalModel model = data::robot_modes();
+  model.modes.front().frequency_std_hz = 0.5;
+  write("modes.json", modal::modes_json(model));
+  const auto path = write("job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n");
+  const auto left_out = [](const PlanResult& result) {
+    return std::ranges::any_of(result.notes, [](const std::string& note) {
+      return note.starts_with(
+                 "The band of the limit by what the fit leaves uncertain is left out: its 100 samples "
+                 "would take about ") &&
+             note.ends_with("[uncertainty] in lobes.toml asks for one, of 20 samples or more.");
+    });
+  };
+  const PlanResult with_band = run_job(path, 1);
+  EXPECT_EQ(with_band.uncertain.samples, 100);
+  EXPECT_FALSE(left_out(with_band));
+  const Cost band =
+      stability::cost_of_uncertain_limits(with_band.cut.problem, with_band.cut.options, with_band.cut.uncertainty);
+  set_cost_limit({.operations = 0.3 * band.operations});
+  const PlanResult without = run_job(path, 1);
+  EXPECT_EQ(without.uncertain.samples, 0);
+  EXPECT_TRUE(left_out(without));
+  EXPECT_EQ(without.recommendation.recommended->axial_depth_m, with_band.recommendation.recommended->axial_depth_m);
+  write("lobes.toml", test_support::lobes_file("spindle_speed_rpm = [6000, 9000]\naxial_depth_mm = [0, 3]\n"
+                                               "grid = [31, 20]\nmethod = \"semi-discretization\"\nintervals = 20\n"
+                                               "[uncertainty]\nsamples = 100\ngrid = [40, 30]\n"));
+  EXPECT_NE(test::rejection([&] { static_cast<void>(run_job(path, 1)); }).find("would take about "), std::string::npos);
+  set_cost_limit({});
+}
+
+// The modes of the cut's own file have the same names.
+TEST_F(Plan, AnErrorAboutFittedModesIsNotThatOfTheFileTheyReplace) {
+  LobesFile cut = read_lobes(write("lobes.toml", test_support::lobes_file("spindle_speed_rpm = [6000, 9000]\n"
+                                                                          "axial_depth_mm = [0, 3]\n")));
+  cut.drop_dynamics();
+  const InvalidInput fast("modes[1].frequency_hz", 5e5, "Hz", "would take about 3 h of one core");
+  EXPECT_STREQ(in_words_of(cut, fast).what(),
+               "fitted modes[1].frequency_hz = 500000 Hz; would take about 3 h of one core");
 }
 
 TEST_F(Plan, SaysWhatIsMissing) {

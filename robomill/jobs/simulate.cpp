@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "robomill/base/error.hpp"
+#include "robomill/jobs/files/in_words.hpp"
 #include "robomill/simulation/drilling.hpp"
 #include "robomill/simulation/posture.hpp"
 
@@ -58,10 +61,26 @@ simulation::PostureCut posture_of(const LobesFile& file, const stability::Operat
   return cut;
 }
 
+/// Speed and depth of the cut are the point's, not the chart's; how it is simulated no document says.
+InvalidInput about_job(const InvalidInput& error) {
+  const std::string& field = error.parts().field;
+  for (const char* const member : {"spindle_speed_rad_per_s", "axial_depth_m", "radial_width_m"}) {
+    if (field.ends_with(member)) return within("points.", error);
+  }
+  for (const char* const member : {"seconds", "sample_rate_hz"}) {
+    if (field == member) return within("options.", error);
+  }
+  return error;
+}
+
 simulation::Simulation simulated(const LobesFile& cut, const SimulateJob& job, Progress& progress) {
-  if (cut.drilling) return simulation::simulate(drilling_of(cut, job.point), job.options, progress);
-  if (cut.problem.spatial) return simulation::simulate(posture_of(cut, job.point), job.options, progress);
-  return simulation::simulate(milling_of(cut, job.point), job.options, progress);
+  try {
+    if (cut.drilling) return simulation::simulate(drilling_of(cut, job.point), job.options, progress);
+    if (cut.problem.spatial) return simulation::simulate(posture_of(cut, job.point), job.options, progress);
+    return simulation::simulate(milling_of(cut, job.point), job.options, progress);
+  } catch (const InvalidInput& error) {
+    throw in_words_of(cut, about_job(error));
+  }
 }
 
 }  // namespace

@@ -100,6 +100,22 @@ TEST(RunSimulate, FitsModesToFrfs) {
   EXPECT_NEAR(fitted.simulation.small.spectral_radius, known.simulation.small.spectral_radius, 1e-3);
 }
 
+// They stand in no document.
+TEST(RunSimulate, NamesOptionsAsTheCommandLineDoes) {
+  const test::Folder folder;
+  SimulateJob job = job_of(folder.file("lobes.toml", milling(one_mode)));
+  const auto rejects = [&] { return rejection([&] { static_cast<void>(run_simulate(job)); }); };
+  job.options.seconds = 1e20;
+  EXPECT_EQ(rejects(), "--seconds = 1e+20 s; must be at most 1e7 s. No cut takes a hundred days");
+  job.options.seconds = 1e6;
+  EXPECT_TRUE(rejects().starts_with("--seconds = 1e+06 s; would take about ")) << rejects();
+  job.options = {.seconds = 1.0, .sample_rate_hz = 2e7};
+  EXPECT_EQ(rejects(), "--sample-rate-hz = 2e+07 Hz; must be at most 10 MHz");
+  job.options = {};
+  job.point.spindle_speed_rad_per_s = 0.5 * units::rpm;
+  EXPECT_TRUE(rejects().starts_with("--at = 0.5 rpm; must be at least 1 rpm")) << rejects();
+}
+
 TEST(RunSimulate, RejectsAMissingFileAndACutWithoutFeed) {
   const test::Folder folder;
   const auto rejects = [](const std::filesystem::path& path) {

@@ -36,6 +36,7 @@ SourceInput::SourceInput(std::unique_ptr<io::SampleSource> source, const monitor
       hop_frames_(file.options.hop_samples()),
       channels_(static_cast<std::size_t>(file.options.channels)) {
   if (!can_wait) rate_.emplace(file.options.sample_rate_hz, file.timeout_s);
+  if (!source_->notes().empty()) notices_->add("recording", fmt::format("{}", fmt::join(source_->notes(), "; ")));
   thread_ = std::jthread([this] { read(); });
 }
 

@@ -61,6 +61,7 @@ bool Intake::hand_over() {
   if (!queue_->offer(filling_)) {
     dropped_(1);
     next.frames_before = frames;
+    next.dropped = true;
     next.restarted = restarted;
     next.samples = std::move(filling_.samples);
     next.samples.clear();

@@ -60,9 +60,29 @@ TEST(Intake, LeavesWholeHopsOutAndSaysSo) {
   ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
   EXPECT_EQ(hop.samples, ramp(50, 10));
   EXPECT_EQ(hop.frames_before, 20U);
+  EXPECT_TRUE(hop.dropped);
   intake.add(ramp(60, 10));
   ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
   EXPECT_EQ(hop.frames_before, 0U);
+  EXPECT_FALSE(hop.dropped);
+}
+
+TEST(HopQueue, SaysForHowLongNothingWasTaken) {
+  HopQueue queue(3);
+  const auto now = std::chrono::steady_clock::now;
+  constexpr milliseconds later{5000};
+  EXPECT_EQ(queue.stalled_s(now() + later), 0.0);  // there is nothing to do
+  Hop hop{.samples = ramp(0, 1)};
+  auto before = now();
+  ASSERT_TRUE(queue.offer(hop));
+  EXPECT_GE(queue.stalled_s(now() + later), 5.0);
+  EXPECT_LE(queue.stalled_s(before + later), 5.0);
+  before = now();
+  ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::hop);
+  EXPECT_GE(queue.stalled_s(now() + later), 5.0);  // at work on it
+  EXPECT_LE(queue.stalled_s(before + later), 5.0);
+  ASSERT_EQ(queue.pop(hop, no_wait), HopQueue::Taken::nothing);
+  EXPECT_EQ(queue.stalled_s(now() + later), 0.0);
 }
 
 // A fast thread against a slow one: every frame is received or reported as missing.

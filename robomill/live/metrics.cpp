@@ -24,8 +24,7 @@ void MetricValues::set_state(const monitor::Decision& decision) {
 }
 
 void MetricValues::add_blind(monitor::BlindReason reason, double seconds) {
-  std::atomic<double>& of = blind_s.at(static_cast<std::size_t>(reason));
-  of = of + seconds;
+  blind_s.at(static_cast<std::size_t>(reason)).fetch_add(seconds);
 }
 
 double MetricValues::blind_for_s(monitor::BlindReason reason) const {
@@ -61,11 +60,15 @@ std::string MetricValues::text() const {
   gauge("faults", "bits of what is wrong with the input", static_cast<double>(faults.load()));
   gauge("stream_seconds", "time of the stream processed so far", stream_s);
   gauge("compute_seconds", "that the last decision took", compute_s);
+  gauge("behind_seconds", "by which decisions are behind the samples", behind_s);
   gauge("queued_hops", "waiting for the detector", static_cast<double>(queued_hops.load()));
   gauge("connected", "1 while a broker is", connected ? 1.0 : 0.0);
   counter("decisions_total", "hops decided", decisions);
   counter("alarms_total", "times that the state became chatter", alarms);
   counter("events_total", "written", events);
+  gauge("unsaved_events", "waiting until their file can be written", static_cast<double>(unsaved_events.load()));
+  counter("lost_events_total", "that were too many to wait for that", lost_events);
+  counter("event_log_failures_total", "times that the file of the events could not be written any more", log_failures);
   counter("dropped_hops_total", "left out since input was faster than the detector", dropped_hops);
   counter("lost_blocks_total", "that never came", lost_blocks);
   counter("refused_messages_total", "that were no blocks of samples", rejected_messages);

@@ -112,13 +112,13 @@ void Recorder::add(std::span<const float> samples) {
   }
 }
 
-void Recorder::skip(std::uint64_t frames) {
+void Recorder::skip(std::uint64_t frames, monitor::BlindReason reason) {
   Parts& parts = *parts_;
   const double from_s = static_cast<double>(parts.frames) / parts.options.sample_rate_hz;
   parts.waves.skip(frames);
   for (SpectrogramStore& each : parts.spectrograms) each.skip(frames);
   parts.frames += frames;
-  parts.states.leave_out(from_s);
+  parts.states.leave_out(from_s, reason);
   parts.alarms.end(from_s);
 }
 

@@ -31,8 +31,8 @@ class ROBOMILL_API Recorder {
 
   /// Whole frames, as they went to the monitor; NaN and infinite samples are absent.
   void add(std::span<const float> samples);
-  /// Frames that were left out: of their time nothing is known, BlindReason::gap.
-  void skip(std::uint64_t frames);
+  /// Frames that were left out: of their time nothing is known, for this reason.
+  void skip(std::uint64_t frames, monitor::BlindReason reason = monitor::BlindReason::gap);
   /// So much more time went by without samples, by the clock: BlindReason::no_signal, as that of frames which turn out
   /// to have been left out then.
   void silent(double seconds);

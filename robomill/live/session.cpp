@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/live/watchdog.hpp"
 
 namespace robomill::live {
 namespace {
@@ -27,8 +29,16 @@ constexpr double frequency_step_hz = 2.0, frequency_pause_s = 0.25;
 constexpr double speed_patience_s = 3.0;
 /// A hint that the signal contradicts by so much, for so long, is reported once.
 constexpr double contradicting_ratio = 0.02, contradicting_s = 1.0, surely_ratio = 0.02;
-/// Samples left out for less, a hop say, are counted and notified, but make no event of their own.
+/// Samples lost for less, a hop say, are counted and notified, but make no event of their own.
 constexpr double shortest_gap_s = 1.0;
+
+void make_blind(monitor::Decision& decision, BlindReason reason) {
+  decision.state = State::blind;
+  decision.reason = reason;
+  decision.chatter_frequency_hz = decision.chatter_frequency_std_hz = 0.0;
+  decision.channel = 0;
+  decision.synchronous = monitor::SynchronousChatter::none;
+}
 
 }  // namespace
 
@@ -38,7 +48,9 @@ Session::Session(const monitor::MonitorFile& file, SessionOptions options, Sessi
       outputs_(std::move(outputs)),
       monitor_((monitor::validate(file), file.options)),
       queue_(queued_hops),
-      actor_(file.act, file.options.spindle_speed_rad_per_s) {
+      actor_(file.act, file.options.spindle_speed_rad_per_s),
+      hint_rad_per_s_(file.options.spindle_speed_rad_per_s),
+      load_(options.live, file.options.look_back_s()) {
   if (!file_.recording_folder.empty()) {
     ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
                                      .seconds = file_.recording_s,
@@ -63,6 +75,8 @@ void Session::run(const std::atomic<bool>& stop) {
   const std::chrono::milliseconds wait = std::clamp(timeout, std::chrono::milliseconds(1), longest_wait);
   Hop hop;
   samples_at_ = Clock::now();
+  std::optional<Watchdog> watchdog;
+  if (options_.live) watchdog.emplace(queue_, [this](double more_s, bool begins) { stall(more_s, begins); });
   while (!stop && !ended_) {
     const HopQueue::Taken taken = queue_.pop(hop, wait);
     if (taken == HopQueue::Taken::closed) break;
@@ -77,6 +91,7 @@ void Session::run(const std::atomic<bool>& stop) {
     emit_notices();
     if (options_.seconds > 0.0 && time_s() >= options_.seconds) break;
   }
+  watchdog.reset();
   queue_.close();
   if (ring_) ring_->finish();
   emit_notices(true);
@@ -92,39 +107,85 @@ void Session::check_silence(Clock::time_point now) {
 }
 
 void Session::become_blind(BlindReason reason) {
+  take_stall();
   if (last_.state == State::blind && last_.reason == reason) return;
   last_.changed = last_.state != State::blind;
-  last_.state = State::blind;
-  last_.reason = reason;
-  last_.chatter_frequency_hz = last_.chatter_frequency_std_hz = 0.0;
-  last_.channel = 0;
-  last_.synchronous = monitor::SynchronousChatter::none;
+  make_blind(last_, reason);
   metrics_.set_state(last_);
   MonitorEvent event;
   event.kind = MonitorEvent::Kind::state;
   event.time_s = time_s();
   event.decision = last_;
-  emit(event);
+  emit_state(event);
 }
 
-void Session::leave_out(std::uint64_t frames) {
+void Session::leave_out(std::uint64_t frames, bool dropped) {
   if (frames == 0) return;
+  const BlindReason reason = dropped ? BlindReason::overloaded : BlindReason::gap;
   const double gap_s = static_cast<double>(frames) / file_.options.sample_rate_hz;
   // Time that went by without samples was counted as it went.
-  metrics_.add_blind(BlindReason::gap, std::max(0.0, gap_s - silence_s_));
-  if (gap_s >= shortest_gap_s && silence_s_ == 0.0) become_blind(BlindReason::gap);
+  count_blind(reason, std::max(0.0, gap_s - silence_s_));
+  if (gap_s >= shortest_gap_s && silence_s_ == 0.0) become_blind(reason);
   frames_ += frames;
   base_s_ += gap_s;
-  if (outputs_.skipped) outputs_.skipped(frames);
+  if (outputs_.skipped) outputs_.skipped(frames, reason);
+}
+
+void Session::judge_load(const Hop& hop) {
+  load_.take(hop, time_s(), queue_.size() == 0, Clock::now());
+  metrics_.behind_s = load_.behind_s();
+  if (!load_.overloaded()) {
+    stall_counted_s_ = 0.0;
+  } else if (last_.state != State::chatter) {
+    become_blind(BlindReason::overloaded);
+  }
+}
+
+/// What the watchdog has published is the state now.
+void Session::take_stall() {
+  const PublishedState::Stall stall = published_.take_stall();
+  if (stall.was) load_.stalled();
+  if (stall.published) make_blind(last_, BlindReason::overloaded);
+}
+
+/// Of the watchdog's thread.
+void Session::stall(double more_s, bool begins) {
+  metrics_.add_blind(BlindReason::overloaded, more_s);
+  stall_counted_s_.fetch_add(more_s);
+  metrics_.behind_s.fetch_add(more_s);
+  metrics_.queued_hops = queue_.size();
+  if (!begins || !published_.begin_stall()) return;
+  MonitorEvent event;
+  event.kind = MonitorEvent::Kind::state;
+  event.time_s = metrics_.stream_s;
+  event.decision.changed = true;
+  event.decision.score = metrics_.score;
+  event.decision.threshold = metrics_.threshold;
+  event.decision.energy_entropy = metrics_.energy_entropy;
+  event.decision.level = metrics_.level;
+  make_blind(event.decision, BlindReason::overloaded);
+  metrics_.set_state(event.decision);
+  ++metrics_.events;
+  if (outputs_.overloaded) outputs_.overloaded(event, monitor::event_line(event));
+  published_.end_stall();
+}
+
+void Session::count_blind(BlindReason reason, double stream_s) {
+  if (reason == BlindReason::overloaded) {
+    // Of a stall the clock's time was counted as it went by.
+    const double counted_s = std::min(stall_counted_s_.load(), stream_s);
+    stall_counted_s_.fetch_sub(counted_s);
+    stream_s -= counted_s;
+  }
+  metrics_.add_blind(reason, stream_s);
 }
 
 void Session::process(Hop&& hop) {
-  leave_out(hop.frames_before);
+  take_stall();
+  leave_out(hop.frames_before, hop.dropped);
   if (hop.restarted) begin_anew();
-  if (std::isfinite(hop.spindle_speed_rad_per_s) && hop.spindle_speed_rad_per_s != speed_rad_per_s_) {
-    speed_rad_per_s_ = hop.spindle_speed_rad_per_s;
-    monitor_.set_spindle_speed(speed_rad_per_s_);
-  }
+  judge_load(hop);
+  take_speed(hop.spindle_speed_rad_per_s);
   const auto channels = static_cast<std::size_t>(file_.options.channels);
   std::span<const float> rest = hop.samples;
   while (!rest.empty()) {
@@ -148,6 +209,17 @@ void Session::process(Hop&& hop) {
   }
 }
 
+/// A speed that is not known says nothing against the one before, but that a spindle no longer stands still for sure.
+void Session::take_speed(double rad_per_s) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool known = std::isfinite(rad_per_s) && rad_per_s >= 0.0;
+  const bool was_still = speed_rad_per_s_ < file_.options.min_speed_rad_per_s;
+  if (known ? rad_per_s == speed_rad_per_s_ : !was_still) return;
+  speed_rad_per_s_ = known ? rad_per_s : unknown;
+  const double hint_rad_per_s = hint_rad_per_s_ > 0.0 ? hint_rad_per_s_ : unknown;
+  monitor_.set_spindle_speed(known ? rad_per_s : hint_rad_per_s);
+}
+
 void Session::begin_anew() {
   monitor_.reset();
   base_s_ = time_s();
@@ -155,6 +227,9 @@ void Session::begin_anew() {
 }
 
 void Session::decide(monitor::Decision decision, double compute_s) {
+  take_stall();
+  const bool doubt = published_.take_doubt();
+  if (load_.overloaded() && decision.state != State::chatter) make_blind(decision, BlindReason::overloaded);
   // Against what was emitted: a detector that begins anew is stable and calls it no change.
   decision.changed = decision.state != last_.state;
   const bool blind = decision.state == State::blind;
@@ -165,8 +240,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   metrics_.stream_s = time_s;
   metrics_.compute_s = compute_s;
   if (blind) {
-    metrics_.add_blind(decision.reason,
-                       static_cast<double>(file_.options.hop_samples()) / file_.options.sample_rate_hz);
+    count_blind(decision.reason, static_cast<double>(file_.options.hop_samples()) / file_.options.sample_rate_hz);
   }
   if (decision.changed && decision.state == State::chatter) {
     ++metrics_.alarms;
@@ -176,7 +250,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   check_hint(decision);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
-  const bool state_news = decision.changed || reason_news || frequency_news;
+  const bool state_news = decision.changed || reason_news || frequency_news || doubt;
   const bool act_due = actor_.observe(decision, time_s);
   const auto event_of = [&](MonitorEvent::Kind kind) {
     MonitorEvent event;
@@ -193,7 +267,11 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   if (!state_news && !window_news && !act_due) return;
   MonitorEvent event = event_of(state_news ? MonitorEvent::Kind::state : MonitorEvent::Kind::window);
   act(event);
-  if (state_news || window_news || !event.command.empty()) emit(event);
+  if (event.kind == MonitorEvent::Kind::state) {
+    emit_state(event);
+  } else if (window_news) {
+    emit(event);
+  }
 }
 
 void Session::check_hint(const monitor::Decision& decision) {
@@ -267,14 +345,21 @@ void Session::emit(const MonitorEvent& event) {
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
 }
 
+void Session::emit_state(const MonitorEvent& event) {
+  published_.begin(event.decision.state == State::blind && event.decision.reason == BlindReason::overloaded);
+  emit(event);
+  published_.end();
+}
+
 void Session::act(MonitorEvent& event) {
   const std::optional<Command> command = actor_.act(event);
   if (!command) return;
   event.kind = MonitorEvent::Kind::state;
   if (!outputs_.command) return;
   outputs_.command(*command);
+  if (command->kind == Command::Kind::spindle_speed) hint_rad_per_s_ = command->spindle_speed_rad_per_s;
   // A stream that carries the speed says itself when the spindle turns at another one.
-  if (command->kind == Command::Kind::spindle_speed && speed_rad_per_s_ == 0.0) {
+  if (command->kind == Command::Kind::spindle_speed && std::isnan(speed_rad_per_s_)) {
     monitor_.set_spindle_speed(command->spindle_speed_rad_per_s);
   }
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,8 +13,10 @@
 #include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
 #include "robomill/live/hop_queue.hpp"
+#include "robomill/live/load.hpp"
 #include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
+#include "robomill/live/published_state.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/monitor.hpp"
@@ -22,7 +25,7 @@
 
 namespace robomill::live {
 
-/// Where a session delivers what it finds. All are called by the thread that runs it; those left empty are not.
+/// Where a session delivers what it finds. All but one are called by the thread that runs it; those left empty are not.
 struct SessionOutputs {
   /// The event, and its line for a file or a topic. False ends the session: nobody reads any more.
   std::function<bool(const monitor::MonitorEvent& event, const std::string& line)> event = {};
@@ -35,11 +38,15 @@ struct SessionOutputs {
   std::function<void(const Command& command)> command = {};
   /// Samples of whole frames after the detector took them, for a recording or a report …
   std::function<void(std::span<const float> samples)> samples = {};
-  /// … and frames that were left out before the next ones.
-  std::function<void(std::uint64_t frames)> skipped = {};
+  /// … and frames that were left out before the next ones: BlindReason::gap, or overloaded.
+  std::function<void(std::uint64_t frames, monitor::BlindReason reason)> skipped = {};
   /// So much more time went by without samples, by the clock.
   std::function<void(double seconds)> silent = {};
   std::function<void()> idle = {};  ///< no hop came within the wait, 0.1 s at most
+  /// The thread that runs the session has not gone on for Load::longest_s: State::blind, BlindReason::overloaded.
+  /// Called by another thread, which must wait for nothing that the first may hold. What it says holds until the next
+  /// event.
+  std::function<void(const monitor::MonitorEvent& event, const std::string& line)> overloaded = {};
 };
 
 struct SessionOptions {
@@ -79,9 +86,15 @@ class ROBOMILL_API Session {
 
   void decide(monitor::Decision decision, double compute_s);
   void check_silence(Clock::time_point now);
-  void leave_out(std::uint64_t frames);
+  void leave_out(std::uint64_t frames, bool dropped);
+  void judge_load(const Hop& hop);
+  void take_speed(double rad_per_s);
+  void take_stall();
+  void stall(double more_s, bool begins);
+  void count_blind(monitor::BlindReason reason, double stream_s);
   void become_blind(monitor::BlindReason reason);
   void emit(const monitor::MonitorEvent& event);
+  void emit_state(const monitor::MonitorEvent& event);
   void advise(monitor::MonitorEvent& event) const;
   void act(monitor::MonitorEvent& event);
   void begin_anew();
@@ -99,12 +112,16 @@ class ROBOMILL_API Session {
   std::optional<AlarmRing> ring_;
   Actor actor_;
   monitor::Decision last_;
-  std::uint64_t frames_ = 0;  ///< processed and left out
-  double base_s_ = 0.0;       ///< the stream's time less the detector's
-  double compute_s_ = 0.0;    ///< since the last decision
-  double speed_rad_per_s_ = 0.0;
+  std::uint64_t frames_ = 0;                                           ///< processed and left out
+  double base_s_ = 0.0;                                                ///< the stream's time less the detector's
+  double compute_s_ = 0.0;                                             ///< since the last decision
+  double speed_rad_per_s_ = std::numeric_limits<double>::quiet_NaN();  ///< that the stream carries; NaN: none
+  double hint_rad_per_s_;                        ///< where it carries none: the file's, or the one commanded last
   Clock::time_point samples_at_ = Clock::now();  ///< when the last ones were processed
   double silence_s_ = 0.0;                       ///< since then, where it is longer than the timeout
+  Load load_;
+  PublishedState published_;
+  std::atomic<double> stall_counted_s_{0.0};  ///< by the clock, of a time whose samples are not counted yet
   std::uint32_t emitted_faults_ = 0;
   double faults_emitted_s_ = -1e300, speed_known_s_ = 0.0;
   std::size_t contradicting_hops_ = 0;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -124,7 +125,7 @@ TEST(Session, DeliversSamplesAndGapsInOrder) {
   std::vector<double> times_s;
   SessionOutputs outputs;
   outputs.samples = [&](std::span<const float> samples) { frames.push_back(samples.size()); };
-  outputs.skipped = [&](std::uint64_t count) { frames.push_back(count); };
+  outputs.skipped = [&](std::uint64_t count, BlindReason) { frames.push_back(count); };
   outputs.decision = [&](const monitor::Decision&, double time_s, double compute_s) {
     EXPECT_GT(compute_s, 0.0);
     times_s.push_back(time_s);
@@ -285,6 +286,138 @@ TEST(Session, IsBlindForTheTimeOfALongGap) {
   EXPECT_NE(kept.events[1].decision.state, State::blind);
   EXPECT_NEAR(kept.events[1].time_s, (1024 + 20'480) / 10'240.0, 1.1e-4);
   EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::gap), 2.025, 1e-9);
+}
+
+TEST(Session, IsBlindWhileTheStreamSaysThatTheSpindleStandsStill) {
+  monitor::MonitorFile file = some_file();
+  file.options.spindle_speed_rad_per_s = 300.0;
+  Kept kept;
+  Session session(file, {}, kept.outputs());
+  Random random(1);
+  for (const double speed : {0.0, 0.005, 600.0}) {
+    for (int i = 0; i < 3; ++i) {
+      Hop hop = noise(random);
+      hop.spindle_speed_rad_per_s = speed;
+      session.process(std::move(hop));
+    }
+  }
+  ASSERT_EQ(kept.events.size(), 2U);
+  EXPECT_EQ(kept.events[0].decision.reason, BlindReason::standstill);
+  EXPECT_NEAR(kept.events[0].time_s, 0.025, 1.1e-4);
+  EXPECT_NE(kept.events[1].decision.state, State::blind);
+  EXPECT_NEAR(kept.events[1].time_s, 0.175, 1.1e-4);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::standstill), 6 * 0.025, 1e-9);
+}
+
+// A stream that no longer knows the speed does not say that the spindle still stands: then the file's hint holds, or
+// none. Where it turned, it is taken to turn as before.
+TEST(Session, AnUnknownSpeedEndsAStandstill) {
+  for (const double hint : {300.0, 0.0}) {
+    for (const double unknown : {std::nan(""), -1.0}) {
+      monitor::MonitorFile file = some_file();
+      file.options.spindle_speed_rad_per_s = hint;
+      std::vector<monitor::Decision> decisions;
+      SessionOutputs outputs;
+      outputs.decision = [&](const monitor::Decision& decision, double, double) { decisions.push_back(decision); };
+      Session session(file, {}, std::move(outputs));
+      Random random(1);
+      for (const double speed : {600.0, unknown, 0.0, unknown, unknown}) {
+        Hop hop = noise(random);
+        hop.spindle_speed_rad_per_s = speed;
+        session.process(std::move(hop));
+      }
+      ASSERT_EQ(decisions.size(), 5U);
+      EXPECT_NEAR(decisions[1].spindle_speed_rad_per_s, 600.0, 60.0);
+      EXPECT_EQ(decisions[2].reason, BlindReason::standstill);
+      for (const std::size_t i : {3U, 4U}) {
+        EXPECT_NE(decisions[i].reason, BlindReason::standstill);
+        EXPECT_NEAR(decisions[i].spindle_speed_rad_per_s, hint, 0.15 * hint);
+      }
+    }
+  }
+}
+
+// That there was no room for a hop says nothing of the cut: until the detector's window holds no hole.
+TEST(Session, IsBlindWhereHopsWereLeftOut) {
+  Kept kept;
+  std::vector<BlindReason> skipped;
+  SessionOutputs outputs = kept.outputs();
+  outputs.skipped = [&](std::uint64_t frames, BlindReason reason) {
+    EXPECT_EQ(frames, 512U);
+    skipped.push_back(reason);
+  };
+  Session session(some_file(), {}, std::move(outputs));
+  Random random(1);
+  for (int i = 0; i < 5; ++i) session.process(noise(random));
+  ASSERT_TRUE(kept.events.empty());
+  Hop after = noise(random);
+  after.frames_before = 512;
+  after.dropped = true;
+  session.process(std::move(after));
+  ASSERT_EQ(kept.events.size(), 1U);
+  EXPECT_EQ(kept.events[0].decision.state, State::blind);
+  EXPECT_EQ(kept.events[0].decision.reason, BlindReason::overloaded);
+  EXPECT_EQ(session.metrics().state, 3);
+  for (int i = 0; i < 20; ++i) session.process(noise(random));
+  ASSERT_EQ(kept.events.size(), 2U);
+  EXPECT_NE(kept.events[1].decision.state, State::blind);
+  EXPECT_TRUE(kept.events[1].decision.changed);
+  EXPECT_NEAR(kept.events[1].time_s - kept.events[0].time_s, 0.325, 0.03);
+  EXPECT_EQ(skipped, std::vector<BlindReason>{BlindReason::overloaded});
+  EXPECT_EQ(session.metrics().blind_for_s(BlindReason::gap), 0.0);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::overloaded), 0.05 + 0.3, 0.03);
+  const std::string text = session.metrics().text();
+  EXPECT_NE(text.find("\nrobomill_blind_seconds_total{reason=\"overloaded\"} 0.3"), std::string::npos) << text;
+}
+
+// The thread of the decisions is stuck: another one says so, once, and the next decision that is in time ends it.
+TEST(Session, AnotherThreadSaysThatDecisionsAreStuck) {
+  monitor::MonitorFile file = some_file();
+  file.timeout_s = 3600.0;
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  std::mutex mutex;
+  std::vector<MonitorEvent> said, states;
+  SessionOutputs outputs;
+  outputs.decision = [&](const monitor::Decision& decision, double, double) {
+    if (decision.hop == 3) released.wait_for(std::chrono::minutes(1));
+  };
+  outputs.event = [&](const MonitorEvent& event, const std::string&) {
+    const std::scoped_lock lock(mutex);
+    if (event.kind == MonitorEvent::Kind::state) states.push_back(event);
+    return true;
+  };
+  outputs.overloaded = [&](const MonitorEvent& event, const std::string& line) {
+    const std::scoped_lock lock(mutex);
+    EXPECT_NE(line.find("\"reason\":\"overloaded\""), std::string::npos) << line;
+    said.push_back(event);
+  };
+  const auto count = [&](const std::vector<MonitorEvent>& events) {
+    const std::scoped_lock lock(mutex);
+    return events.size();
+  };
+  std::atomic<bool> stop{false};
+  Session session(file, {.live = true}, std::move(outputs));
+  std::jthread thread([&] { session.run(stop); });
+  Random random(1);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(session.queue().push(noise(random)));
+  const MetricValues& metrics = session.metrics();
+  ASSERT_TRUE(wait_for([&] { return count(said) == 1; }));
+  EXPECT_EQ(metrics.state, 3);
+  EXPECT_EQ(said[0].decision.reason, BlindReason::overloaded);
+  EXPECT_GE(metrics.blind_for_s(BlindReason::overloaded), Load::longest_s);
+  EXPECT_GE(metrics.behind_s, Load::longest_s);
+  ASSERT_TRUE(wait_for([&] { return metrics.blind_for_s(BlindReason::overloaded) >= Load::longest_s + 0.3; }));
+  EXPECT_EQ(count(said), 1U);
+  EXPECT_EQ(count(states), 0U);
+  release.set_value();
+  ASSERT_TRUE(wait_for([&] { return metrics.decisions == 5; }));
+  EXPECT_EQ(metrics.state, 3);  // of these it was said too late
+  ASSERT_TRUE(session.queue().push(noise(random)));
+  ASSERT_TRUE(wait_for([&] { return count(states) == 1; }));
+  EXPECT_NE(states[0].decision.state, State::blind);
+  EXPECT_TRUE(states[0].decision.changed);
+  session.queue().close();
 }
 
 // What the monitor itself cannot judge: a gap that was filled, then a sensor that is dead.

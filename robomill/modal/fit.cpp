@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/modal/fitting/fit_hybrid.hpp"
 #include "robomill/modal/fitting/fit_parts.hpp"
@@ -281,6 +282,34 @@ void FitOptions::validate() const {
   }
 }
 
+namespace {
+
+/// The swarm sees some hundred lines, for each particle in each round; the poles every line, for each order and in each
+/// step of their refinement.
+void require_affordable_fit(const FrfSet& used, const FitOptions& options) {
+  const auto lines = static_cast<double>(used.frequency_hz.size());
+  const auto frfs = static_cast<double>(used.frfs.size());
+  const double modes = options.modes > 0 ? options.modes : 8.0;
+  if (options.method == FitMethod::pso) {
+    constexpr double operations_of_value = 0.5, most_lines = 640.0, usual_particles = 400.0, usual_iterations = 8000.0;
+    const double particles = options.pso_particles, iterations = options.pso_max_iterations;
+    require_affordable(
+        {.operations = operations_of_value * modes * std::min(lines, most_lines) * frfs * particles * iterations,
+         .bytes = 100.0 * modes * particles + 8.0 * iterations,
+         .dominant = dominant_of(
+             {{.field = "pso_particles", .value = particles, .times_usual = particles / usual_particles},
+              {.field = "pso_max_iterations", .value = iterations, .times_usual = iterations / usual_iterations}})});
+    return;
+  }
+  constexpr double operations_of_order = 5.0, operations_of_mode = 5e3, bytes_of_order = 16.0;
+  const double orders = options.lscf_max_order, values = lines * frfs;
+  require_affordable({.operations = values * (operations_of_order * orders * orders + operations_of_mode * modes),
+                      .bytes = values * bytes_of_order * orders,
+                      .dominant = {.field = "frequency_hz", .value = lines, .unit = "lines"}});
+}
+
+}  // namespace
+
 FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& progress) {
   options.validate();
   set.validate();
@@ -291,6 +320,7 @@ FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& prog
   result.band_low_hz = band.frequency_hz(0);
   result.band_high_hz = band.frequency_hz(result.lines - 1);
   const FrfSet used = without_zeros(band, result.warnings);
+  require_affordable_fit(used, options);
   if (options.method == FitMethod::pso) {
     fit_by_swarm(result, used, options, progress);
   } else {

@@ -10,10 +10,19 @@
 namespace robomill::modal {
 namespace {
 
+void require_mode_frequency(const std::string& field, double frequency_hz) {
+  constexpr double highest_hz = 1e6;
+  require_positive(field.c_str(), frequency_hz, "Hz");
+  if (frequency_hz > highest_hz) {
+    throw InvalidInput(field, frequency_hz, "Hz", "must be at most 1 MHz",
+                       "Tools, spindles and robots vibrate far below; are the units mixed up?");
+  }
+}
+
 void validate_mode(const ModalModel& model, std::size_t k) {
   const Mode& mode = model.modes[k];
   const std::string path = "modes[" + std::to_string(k + 1) + "].";
-  require_positive((path + "frequency_hz").c_str(), mode.frequency_hz, "Hz");
+  require_mode_frequency(path + "frequency_hz", mode.frequency_hz);
   if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
     throw InvalidInput(path + "damping_ratio", mode.damping_ratio, "", "must lie between 0 and 1",
                        "It is a ratio, not a percentage; a passive structure has it above 0");
@@ -55,7 +64,7 @@ ModalModel modes_from_mass(const std::vector<MassMode>& x, const std::vector<Mas
     for (std::size_t k = 0; k < given[axis]->size(); ++k) {
       const MassMode& mode = (*given[axis])[k];
       const std::string path = std::string(1, "xyz"[axis]) + "[" + std::to_string(k + 1) + "].";
-      require_positive((path + "frequency_hz").c_str(), mode.frequency_hz, "Hz");
+      require_mode_frequency(path + "frequency_hz", mode.frequency_hz);
       require_positive((path + "modal_mass_kg").c_str(), mode.modal_mass_kg, "kg");
       if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
         throw InvalidInput(path + "damping_ratio", mode.damping_ratio, "", "must lie between 0 and 1",

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/posture/calibration.hpp"
@@ -443,6 +444,24 @@ void PostureModelOptions::validate() const {
   if (!(band_high_hz > band_low_hz)) throw InvalidInput("band_high_hz", band_high_hz, "Hz", "must be > band_low_hz");
 }
 
+namespace {
+
+/// A calibration looks at every line of every posture.
+void require_affordable_calibration(const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options) {
+  constexpr double operations_of_value = 2.4e5, bytes_of_value = 1e3;
+  double values = 0.0;
+  for (const MeasuredPosture& posture : measured) {
+    const Eigen::VectorXd& lines = posture.frfs.frequency_hz;
+    const auto in_band = (lines.array() >= options.band_low_hz && lines.array() <= options.band_high_hz).count();
+    values += static_cast<double>(in_band) * static_cast<double>(posture.frfs.frfs.size());
+  }
+  require_affordable({.operations = operations_of_value * values,
+                      .bytes = bytes_of_value * values,
+                      .dominant = {.field = "postures", .value = values, .unit = "values of FRFs"}});
+}
+
+}  // namespace
+
 PostureModel::PostureModel(const robot::Cell& cell, const std::optional<robot::Link>& payload,
                            const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options,
                            Progress& progress) {
@@ -451,6 +470,7 @@ PostureModel::PostureModel(const robot::Cell& cell, const std::optional<robot::L
   for (const MeasuredPosture& posture : measured) require_position(cell, posture.joints, posture.name);
   if (!measured.empty()) require_alike(measured);
   if (has_model(cell)) {
+    require_affordable_calibration(measured, options);
     source_ = std::make_unique<Calibrated>(cell, payload, measured, options, progress);
   } else if (!measured.empty()) {
     source_ = std::make_unique<Interpolated>(cell, measured, options, progress);

@@ -1,5 +1,7 @@
 #include "robomill/monitor/monitor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,8 +19,6 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double silence = 1e-8;  // share of the loudest channel's power below which a channel is dead
-// For which a channel must have been well again: the longest that a detector looks back.
-constexpr double look_back_s = Spectra::windows_s.front();
 // Hops in a row at the converter's limit that an impact does not make.
 constexpr std::size_t clipped_hops = 4;
 
@@ -28,7 +28,9 @@ constexpr Name<BlindReason> reason_names[] = {{"none", BlindReason::none},
                                               {"no-signal", BlindReason::no_signal},
                                               {"clipped", BlindReason::clipped},
                                               {"speed-unknown", BlindReason::speed_unknown},
-                                              {"gap", BlindReason::gap}};
+                                              {"gap", BlindReason::gap},
+                                              {"standstill", BlindReason::standstill},
+                                              {"overloaded", BlindReason::overloaded}};
 constexpr Name<SynchronousChatter> synchronous_names[] = {{"none", SynchronousChatter::none},
                                                           {"locked", SynchronousChatter::locked},
                                                           {"period-doubling", SynchronousChatter::period_doubling}};
@@ -39,8 +41,24 @@ constexpr Name<Fault> fault_names[] = {{"not-finite", Fault::not_finite},
                                        {"wrong-sample-rate", Fault::wrong_sample_rate},
                                        {"speed-unknown", Fault::speed_unknown}};
 
+constexpr double fastest_min_speed_rpm = 100'000.0;
+
 void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
   if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
+}
+
+/// Of a time: so many samples of it.
+void require_samples(const char* field, double seconds, double rate_hz, int least, const char* usual) {
+  constexpr int most = 1'000'000;
+  const double samples = std::round(seconds * rate_hz);
+  if (!(samples >= least)) {
+    throw InvalidInput(field, samples, "samples", fmt::format("must be at least {} samples long", least),
+                       fmt::format("Is it in s? {} is usual", usual));
+  }
+  if (samples > most) {
+    throw InvalidInput(field, samples, "samples", fmt::format("must be at most {} samples long", most),
+                       fmt::format("Is it in us? {} is usual", usual));
+  }
 }
 
 std::unique_ptr<Detector> make_detector(const MonitorOptions& options) {
@@ -66,14 +84,19 @@ void MonitorOptions::validate() const {
                        "gives more pulses than half the sample rate can show",
                        "Is spindle_speed_rpm right? Otherwise divide the pulses before they are sampled");
   }
+  require_between("min_speed_rad_per_s", min_speed_rad_per_s, slowest_min_speed_rad_per_s,
+                  fastest_min_speed_rpm * units::rpm, "rad/s", "must be between 1 and 100000 rpm");
+  if (spindle_speed_rad_per_s > 0.0 && spindle_speed_rad_per_s < min_speed_rad_per_s) {
+    throw InvalidInput("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s",
+                       "must be at least the speed below which the spindle stands still and nothing is judged",
+                       "Is it in 1/s? 50 1/s are 3000 rpm");
+  }
   require_between("speed_std_ratio", speed_std_ratio, 1e-4, 0.2, "", "must be in [0.0001, 0.2]");
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
   require_positive("window_s", window_s, "s");
   require_positive("hop_s", hop_s, "s");
-  require_between("hop_s", std::round(hop_s * sample_rate_hz), 16.0, 1e6, "samples",
-                  "must be at least 16 samples long");
-  require_between("window_s", std::round(window_s * sample_rate_hz), 32.0, 1e6, "samples",
-                  "must be at least 32 samples long");
+  require_samples("hop_s", hop_s, sample_rate_hz, 16, "25 ms");
+  require_samples("window_s", window_s, sample_rate_hz, 32, "50 ms");
   if (window_s < hop_s) throw InvalidInput("window_s", window_s, "s", "must be at least hop_s");
   require_between("bands", bands, 2.0, 64.0, "", "must be in [2, 64]");
   if (kind == Kind::energy_entropy && !std::isfinite(threshold)) {
@@ -92,12 +115,16 @@ std::size_t MonitorOptions::window_samples() const noexcept {
   return static_cast<std::size_t>(std::lround(window_s * sample_rate_hz));
 }
 
+double MonitorOptions::look_back_s() const noexcept {
+  return std::max(Spectra::windows_s.front(), kind == Kind::energy_entropy ? 2.0 * window_s : 0.0);
+}
+
 struct ChatterMonitor::Parts {
   explicit Parts(const MonitorOptions& o)
       : options(o),
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
-        left_out_hops(static_cast<std::size_t>(std::ceil(look_back_s / o.hop_s - 1e-9)) - 1),
+        left_out_hops(static_cast<std::size_t>(std::ceil(o.look_back_s() / o.hop_s - 1e-9)) - 1),
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
         left_out(channels),
@@ -118,7 +145,7 @@ struct ChatterMonitor::Parts {
     const State before = last.state;
     const std::uint64_t hop = last.hop + 1;
     last = {.hop = hop, .time_s = static_cast<double>(hop * hop_frames - 1) / options.sample_rate_hz};
-    Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames};
+    Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames, .still = still};
     validate(of);
     detector->decide(of, last);
     take_blindness();
@@ -187,7 +214,7 @@ struct ChatterMonitor::Parts {
 
   MonitorOptions options;
   std::size_t channels = 1, hop_frames = 1;
-  std::size_t left_out_hops = 0;  // after a bad one
+  std::size_t left_out_hops = 0;  // after a bad one: until all that is looked back at is good
   std::vector<double> samples;    // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
   std::vector<SignalValidation> validations;
@@ -195,6 +222,7 @@ struct ChatterMonitor::Parts {
   std::size_t clipped_run = 0;        // hops in which every usable channel was at its limit
   std::size_t lost_frames = 0;        // of this hop, NaN in every channel
   bool frame_is_lost = true;          // so far
+  bool still = false;                 // the spindle
   BlindReason unusable = BlindReason::none;
   std::unique_ptr<Detector> detector;
   Decision last;
@@ -218,6 +246,8 @@ std::size_t ChatterMonitor::frames_to_next_decision() const noexcept {
 }
 
 void ChatterMonitor::set_spindle_speed(double rad_per_s) noexcept {
+  parts_->still = rad_per_s >= 0.0 && rad_per_s < parts_->options.min_speed_rad_per_s;
+  if (parts_->still) return;
   parts_->options.spindle_speed_rad_per_s = std::isfinite(rad_per_s) && rad_per_s > 0.0 ? rad_per_s : 0.0;
   parts_->detector->set_spindle_speed(parts_->options.spindle_speed_rad_per_s);
 }

@@ -9,6 +9,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
+#include "robomill/base/units.hpp"
 
 // Method: robomill/monitor/README.md, "Method"
 
@@ -36,16 +37,19 @@ enum class State {
 /// Why nothing can be said of the cut. The first that applies is given; chatter once found is not blind.
 enum class BlindReason {
   none,
-  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within the last 0.3 s. A
-  /// session also gives it where no samples come.
+  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within
+  /// MonitorOptions::look_back_s(). A session also gives it where no samples come.
   no_signal,
   clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
-  speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's
-  gap             ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
+  speed_unknown,  ///< no spindle speed was given, and none can be found, or one below 300 rpm: the detector's
+  gap,            ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
+  standstill,     ///< the spindle turns slower than MonitorOptions::min_speed_rad_per_s
+  overloaded      ///< a session's: its decisions are more than a second behind the samples, or hops were left out
 };
 /// Those that are one.
-inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal, BlindReason::clipped,
-                                                BlindReason::speed_unknown, BlindReason::gap};
+inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal,     BlindReason::clipped,
+                                                BlindReason::speed_unknown, BlindReason::gap,
+                                                BlindReason::standstill,    BlindReason::overloaded};
 /// Chatter synchronous with the spindle. It is detected by the power of a multiple of rotation against what was learnt
 /// of it.
 enum class SynchronousChatter {
@@ -64,6 +68,9 @@ enum Fault : std::uint32_t {
   speed_unknown = 32       ///< no comb was found: in air, or the tests run without
 };
 
+/// The least MonitorOptions::min_speed_rad_per_s.
+inline constexpr double slowest_min_speed_rad_per_s = 1.0 * units::rpm;
+
 struct ROBOMILL_API MonitorOptions {
   Kind kind = Kind::comb_cusum;
   double sample_rate_hz = 0.0;           ///< in [100, 1e6]; required
@@ -72,11 +79,13 @@ struct ROBOMILL_API MonitorOptions {
   int pulses_per_revolution = 1;         ///< of the tachometer or encoder; in [1, 10000]
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
   double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
-  int teeth = 0;                         ///< in [0, 64]; 0: unknown
-  double window_s = 0.05;                ///< energy-entropy: of the transform; at least 32 samples and one hop
-  double hop_s = 0.025;                  ///< between decisions; at least 16 samples
-  int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
-  Entropy entropy = Entropy::energy;     ///< energy-entropy
+  /// Below it the spindle stands still: BlindReason::standstill. In [1, 100000] rpm; a hint is none or above it.
+  double min_speed_rad_per_s = 30.0 * units::rpm;
+  int teeth = 0;                      ///< in [0, 64]; 0: unknown
+  double window_s = 0.05;             ///< energy-entropy: of the transform; at least 32 samples and one hop
+  double hop_s = 0.025;               ///< between decisions; at least 16 samples
+  int bands = 16;                     ///< equal, from 0 to half the sample rate; in [2, 64]
+  Entropy entropy = Entropy::energy;  ///< energy-entropy
   /// energy-entropy: finite, required there; chatter where Decision::energy_entropy > threshold (alarm_below: <). It
   /// holds for one form, unit and sensor, and calibrate() sets it.
   double threshold = std::numeric_limits<double>::quiet_NaN();
@@ -89,6 +98,9 @@ struct ROBOMILL_API MonitorOptions {
   /// Samples a hop and a window: the times, rounded.
   [[nodiscard]] std::size_t hop_samples() const noexcept;
   [[nodiscard]] std::size_t window_samples() const noexcept;
+  /// Of the stream, how far back a decision looks: the default detector's longest window, or two of the published one's
+  /// where these are longer.
+  [[nodiscard]] double look_back_s() const noexcept;
 };
 
 /// One a hop, by value.
@@ -134,9 +146,10 @@ class ROBOMILL_API ChatterMonitor {
   Decision push(std::span<const float> samples) noexcept;
   /// Frames still wanted for the next decision; who pushes no more than these sees every one.
   [[nodiscard]] std::size_t frames_to_next_decision() const noexcept;
-  /// A new hint [rad/s]; 0, negative or not finite: unknown.
+  /// A new hint [rad/s]. Below MonitorOptions::min_speed_rad_per_s, 0 too, the spindle stands still until the next one,
+  /// and the hint before stays; negative or not finite: unknown.
   void set_spindle_speed(double rad_per_s) noexcept;
-  /// As after construction; the last hint stays.
+  /// As after construction; the last hint stays, and so does a spindle that stands still.
   void reset() noexcept;
   [[nodiscard]] const MonitorOptions& options() const noexcept;
 

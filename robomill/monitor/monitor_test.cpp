@@ -187,6 +187,26 @@ TEST(ChatterMonitor, StepsOfAConverterAreNotClipped) {
   }
 }
 
+TEST(ChatterMonitor, IsBlindWhileTheSpindleStandsStill) {
+  for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
+    MonitorOptions options = options_of(1, kind);
+    options.threshold = -1.0;  // whatever there is exceeds it
+    ChatterMonitor monitor(options);
+    Random random(1);
+    monitor.set_spindle_speed(2.0);  // 19 rpm
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill) << i;
+    // What is wrong with the input stands before it.
+    EXPECT_EQ(push_hop(monitor, random, [](int, float) { return nan; }).reason, BlindReason::gap);
+    monitor.reset();
+    EXPECT_EQ(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+    monitor.set_spindle_speed(300.0);
+    EXPECT_NE(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+    monitor.set_spindle_speed(0.0);
+    monitor.set_spindle_speed(std::numeric_limits<double>::quiet_NaN());  // not known is not still
+    EXPECT_NE(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+  }
+}
+
 TEST(ChatterMonitor, ForgetsOnResetWhyItWasBlind) {
   ChatterMonitor monitor(options_of(1));
   Random random(1);
@@ -300,6 +320,13 @@ TEST(ChatterMonitor, AllocatesNothing) {
   }
 }
 
+TEST(MonitorOptions, LookBackAsFarAsTheDetectorDoes) {
+  EXPECT_EQ(MonitorOptions{}.look_back_s(), 0.3);
+  EXPECT_EQ(MonitorOptions{.window_s = 2.0}.look_back_s(), 0.3);
+  EXPECT_EQ((MonitorOptions{.kind = Kind::energy_entropy, .window_s = 0.05}.look_back_s()), 0.3);
+  EXPECT_EQ((MonitorOptions{.kind = Kind::energy_entropy, .window_s = 2.0}.look_back_s()), 4.0);
+}
+
 TEST(MonitorOptions, RejectWhatMakesNoSense) {
   const auto field = [](const MonitorOptions& options) { return test::field_of([&] { options.validate(); }); };
   EXPECT_EQ(field({}), "sample_rate_hz");
@@ -308,6 +335,9 @@ TEST(MonitorOptions, RejectWhatMakesNoSense) {
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .channels = 2, .tachometer_channel = 2}), "tachometer_channel");
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .tachometer_channel = 0}), "tachometer_channel");
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .spindle_speed_rad_per_s = std::nan("")}), "spindle_speed_rad_per_s");
+  EXPECT_EQ(field({.sample_rate_hz = 1e4, .spindle_speed_rad_per_s = 3.0}), "spindle_speed_rad_per_s");
+  EXPECT_EQ(field({.sample_rate_hz = 1e4, .min_speed_rad_per_s = 0.1}), "min_speed_rad_per_s");
+  EXPECT_EQ(field({.sample_rate_hz = 1e4, .min_speed_rad_per_s = std::nan("")}), "min_speed_rad_per_s");
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .window_s = 0.01}), "window_s");
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .hop_s = 1e-4}), "hop_s");
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .bands = 65}), "bands");

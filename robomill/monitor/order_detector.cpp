@@ -6,6 +6,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/entropy.hpp"
+#include "robomill/monitor/orders/spectra.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -34,6 +35,7 @@ OrderDetector::OrderDetector(const MonitorOptions& options)
 
 void OrderDetector::set_spindle_speed(double rad_per_s) noexcept {
   hint_hz_ = rad_per_s / units::revolution;
+  if (hint_hz_ >= 0.5 * options_.sample_rate_hz) hint_hz_ = 0.0;  // none of its multiples can be seen
   orders_.set_hint(hint_hz_);
 }
 
@@ -60,16 +62,29 @@ void OrderDetector::high_pass(const Hop& hop) noexcept {
   first_ = false;
 }
 
+// The last pulse of a spindle that stops is followed by none: after the time between two at the slowest speed it rests,
+// until they give a speed again.
+void OrderDetector::count_pulses(const Hop& hop) noexcept {
+  pulses_.push(hop.channel(static_cast<std::size_t>(options_.tachometer_channel)));
+  const double rotation_hz = pulses_.rotation_hz();
+  const double slowest_hz = options_.min_speed_rad_per_s / units::revolution;
+  if (rotation_hz > 0.0) {
+    rests_ = rotation_hz < slowest_hz;
+  } else if (pulses_.quiet_s() * slowest_hz * options_.pulses_per_revolution > 1.0) {
+    rests_ = true;
+  }
+  if (rotation_hz > 0.0 && !rests_) orders_.measured(rotation_hz, pulses_.std_ratio());
+}
+
 void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
   std::uint64_t bad_channels = hop.bad_channels;
   if (options_.tachometer_channel >= 0) {
-    const auto channel = static_cast<std::size_t>(options_.tachometer_channel);
-    pulses_.push(hop.channel(channel));
-    bad_channels |= std::uint64_t{1} << channel;
-    if (pulses_.rotation_hz() > 0.0) orders_.measured(pulses_.rotation_hz(), pulses_.std_ratio());
+    count_pulses(hop);
+    bad_channels |= std::uint64_t{1} << options_.tachometer_channel;
   }
+  const bool still = hop.still || rests_;
   high_pass(hop);
-  const CutTests::Verdict orders = orders_.step(samples_, hop.frames, bad_channels);
+  const CutTests::Verdict orders = orders_.step(samples_, hop.frames, bad_channels, still);
   decision.threshold = 1.0;
   decision.score = orders.score;
   decision.state = orders.chatter ? State::chatter : orders.score > 0.0 ? State::transition : State::stable;
@@ -79,13 +94,23 @@ void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
     decision.channel = static_cast<int>(orders.channel);
     decision.synchronous = orders.synchronous;
   }
+  if (still) {
+    decision.reason = BlindReason::standstill;
+    unknown_s_ = doubt_s_ = suggested_rate_hz_ = 0.0;
+  } else {
+    report_speed(orders, decision);
+  }
+  report_bands(bad_channels, decision);
+}
+
+void OrderDetector::report_speed(const CutTests::Verdict& orders, Decision& decision) noexcept {
   decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
   decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
   if (!orders.known) decision.faults |= speed_unknown;
-  unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
+  // Of the orders of so slow a spindle nothing can be said, whether or not it is known.
+  unknown_s_ = hint_hz_ >= lowest_rotation_hz || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
   if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
   doubt_the_sample_rate(orders, decision);
-  report_bands(bad_channels, decision);
 }
 
 // Where the comb of the speed given is not there, but another: at another sample rate it would be that one.

@@ -18,7 +18,9 @@ class OrderDetector final : public Detector {
   void reset() noexcept override;
 
  private:
+  void count_pulses(const Hop& hop) noexcept;
   void high_pass(const Hop& hop) noexcept;
+  void report_speed(const CutTests::Verdict& orders, Decision& decision) noexcept;
   void report_bands(std::uint64_t bad_channels, Decision& decision) noexcept;
   void doubt_the_sample_rate(const CutTests::Verdict& orders, Decision& decision) noexcept;
 
@@ -30,6 +32,7 @@ class OrderDetector final : public Detector {
   std::vector<double> bands_;   // mean squares, of a channel
   double hint_hz_ = 0.0;        // 0: none
   bool first_ = true;
+  bool rests_ = false;              // by pulses
   double unknown_s_ = 0.0;          // for which neither a speed is given nor a comb found
   double doubt_s_ = 0.0;            // for which a comb has been there that the hint does not explain
   double suggested_rate_hz_ = 0.0;  // 0: none

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <tuple>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "testing/monitor/decisions.hpp"
 #include "testing/monitor/signal.hpp"
@@ -131,11 +134,121 @@ TEST(OrderDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
   EXPECT_EQ(listen().reason, BlindReason::speed_unknown);
   monitor.set_spindle_speed(500.0);
   EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
-  monitor.set_spindle_speed(0.0);
+  monitor.set_spindle_speed(-1.0);
   EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
   EXPECT_EQ(listen().reason, BlindReason::speed_unknown);
   monitor.reset();
   EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
+}
+
+/// A spindle at rest for half a second, and then a cut at 9,000 rpm that chatters from 1 s on.
+SyntheticCut cut_after_rest() {
+  return {.rotation_hz = 150.0, .teeth = 2, .chatter_hz = 1268.0, .starts_s = 1.0, .seconds = 18.5};
+}
+std::vector<float> after_rest(const SyntheticCut& cut) {
+  std::vector<float> x = vibration(cut);
+  Random random(4);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(0.5 * cut.sample_rate_hz); ++i) {
+    x[i] = static_cast<float>(0.05 * random.normal());
+  }
+  return x;
+}
+
+// What a stream says of a spindle that hardly turns, and then of one that cuts.
+TEST(OrderDetector, AlarmsInTimeAfterAStandstill) {
+  const SyntheticCut cut = cut_after_rest();
+  const std::vector<float> x = after_rest(cut);
+  for (const double rest_rpm : {0.05, 0.0, 29.0}) {
+    MonitorOptions options = options_for(cut);
+    options.spindle_speed_rad_per_s = 0.0;
+    ChatterMonitor monitor(options);
+    const std::size_t block = options.hop_samples();
+    std::vector<Decision> decisions;
+    for (std::size_t at = 0; at + block <= x.size(); at += block) {
+      const bool rests = static_cast<double>(at) < 0.5 * cut.sample_rate_hz;
+      monitor.set_spindle_speed((rests ? rest_rpm : 9000.0) * units::rpm);
+      decisions.push_back(monitor.push(std::span(x).subspan(at, block)));
+      EXPECT_EQ(decisions.back().reason == BlindReason::standstill, rests) << decisions.back().time_s;
+      EXPECT_EQ(decisions.back().state == State::blind, rests) << decisions.back().time_s;
+    }
+    EXPECT_GT(first_alarm_s(decisions), 1.0) << rest_rpm;
+    EXPECT_LT(first_alarm_s(decisions), 1.4) << rest_rpm;
+    EXPECT_EQ(decisions.back().state, State::chatter) << rest_rpm;
+  }
+}
+
+// Pulses end where the spindle stops: after two seconds without one at 30 rpm, and not before.
+TEST(OrderDetector, StandsStillWherePulsesEnd) {
+  SyntheticCut cut{.sample_rate_hz = 2560.0, .seconds = 8.0};
+  std::vector<float> both = with_pulses(cut, 1, 0.0, 5.0);
+  constexpr double stops_s = 1.5, starts_s = 6.0;
+  Random random(3);
+  for (std::size_t i = 0; i < both.size() / 2; ++i) {
+    const double time_s = static_cast<double>(i) / cut.sample_rate_hz;
+    if (time_s < stops_s || time_s > starts_s) continue;
+    both[2 * i] = static_cast<float>(0.05 * random.normal());
+    both[2 * i + 1] = static_cast<float>(0.02 * random.normal());
+  }
+  cut.channels = 2;
+  for (const double hint_off : {0.0, -1.0}) {
+    MonitorOptions options = options_for(cut, hint_off);
+    options.tachometer_channel = 1;
+    for (const Decision& d : decisions_of(options, both)) {
+      const bool rests = d.time_s > stops_s + 2.1 && d.time_s < starts_s;
+      if (rests) {
+        EXPECT_EQ(d.reason, BlindReason::standstill) << d.time_s;
+      } else if (d.time_s < stops_s + 1.9 || d.time_s > starts_s + 0.1) {
+        EXPECT_NE(d.reason, BlindReason::standstill) << d.time_s;
+      }
+    }
+  }
+}
+
+// A comb with a line for each multiple of 0.05 rpm took minutes for what takes some 5 ms: ctest's limit would show it.
+TEST(OrderDetector, NoSpeedCostsMore) {
+  const SyntheticCut cut{.seconds = 0.5};
+  const std::vector<float> x = vibration(cut);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double min_rpm : {1.0, 30.0}) {
+    for (const double rpm : {0.0, 0.05, 1.0, 31.0, 299.0, 301.0, 3e5, 1e7, 1e300, infinity, -3000.0, -infinity,
+                             std::numeric_limits<double>::quiet_NaN()}) {
+      MonitorOptions options = options_for(cut);
+      options.min_speed_rad_per_s = min_rpm * units::rpm;
+      ChatterMonitor monitor(options);
+      const std::size_t block = options.hop_samples();
+      for (std::size_t at = 0; at + block <= x.size(); at += block) {
+        monitor.set_spindle_speed(rpm * units::rpm * (at / block % 2 == 0 ? 1.0 : 1.3));  // unsteady
+        EXPECT_TRUE(std::isfinite(monitor.push(std::span(x).subspan(at, block)).score)) << rpm;
+      }
+    }
+  }
+}
+
+// Chatter that lasts when the speed is said to be 0 does not vanish; none begins then, whatever is heard.
+TEST(OrderDetector, AStandstillHidesNoAlarmAndBeginsNone) {
+  const SyntheticCut cut{.chatter_hz = 683.0, .starts_s = 1.0, .ends_s = 2.0, .seconds = 3.0};
+  const std::vector<float> x = vibration(cut);
+  for (const double stops_s : {0.5, 1.6}) {
+    const MonitorOptions options = options_for(cut);
+    ChatterMonitor monitor(options);
+    const std::size_t block = options.hop_samples();
+    bool alarm = false;
+    for (std::size_t at = 0; at + block <= x.size(); at += block) {
+      const double time_s = static_cast<double>(at) / cut.sample_rate_hz;
+      if (time_s > stops_s) monitor.set_spindle_speed(0.0);
+      const Decision d = monitor.push(std::span(x).subspan(at, block));
+      alarm = alarm || d.state == State::chatter;
+      if (time_s > stops_s && d.state != State::chatter) {
+        EXPECT_EQ(d.reason, BlindReason::standstill) << time_s;
+        EXPECT_EQ(d.spindle_speed_rad_per_s, 0.0) << time_s;
+        EXPECT_EQ(d.faults & speed_unknown, 0U) << time_s;
+      }
+      if (stops_s == 1.6 && time_s > 1.7 && time_s < 1.9) {
+        EXPECT_EQ(d.state, State::chatter) << time_s;
+      }
+    }
+    EXPECT_EQ(alarm, stops_s == 1.6);
+  }
 }
 
 TEST(OrderDetector, FindsTheCombOfACutWithoutAHint) {
@@ -310,6 +423,19 @@ TEST(OrderDetector, DetectsSynchronousChatter) {
     EXPECT_TRUE(std::ranges::any_of(decisions, [&, want = kind](const Decision& d) { return d.synchronous == want; }))
         << teeth;
     EXPECT_NEAR(decisions.back().chatter_frequency_hz, cut.chatter_hz, 5.0) << teeth;
+  }
+}
+
+// A face mill whose tooth passing can be told apart, but not its orders: chatter three times as strong is not found, so
+// that such a cut must not look stable.
+TEST(OrderDetector, IsBlindBelowTheSpeedWhoseOrdersCanBeToldApart) {
+  for (const double rpm : {250.0, 301.0}) {
+    const SyntheticCut cut{.rotation_hz = rpm / 60.0, .teeth = 10, .chatter_hz = 300.0, .chatter = 3.0};
+    for (const Decision& d : decisions_of(options_for(cut), vibration(cut))) {
+      if (std::abs(d.time_s - 1.0) < 0.05) continue;
+      EXPECT_EQ(d.reason == BlindReason::speed_unknown, rpm < 300.0 && d.time_s > 1.0 && d.state != State::chatter)
+          << rpm << " " << d.time_s;
+    }
   }
 }
 

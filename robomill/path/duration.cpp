@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/units.hpp"
 
 namespace robomill::path {
@@ -91,12 +92,26 @@ void require_limits(const Program& program, const SmoothingOptions& options) {
   }
 }
 
+/// A sample is computed, checked and written.
+void require_affordable_samples(const SmoothingOptions& options, double duration_s) {
+  constexpr double operations_of_sample = 4e3, usual_period_s = 1e-3;
+  require_affordable({.operations = operations_of_sample * duration_s / options.sample_period_s,
+                      .dominant = dominant_of({{.field = "sample_period_s",
+                                                .value = options.sample_period_s,
+                                                .unit = "s",
+                                                .times_usual = usual_period_s / options.sample_period_s},
+                                               {.field = "the program's duration",
+                                                .value = duration_s,
+                                                .unit = "s",
+                                                .times_usual = duration_s / hour_s}})});
+}
+
 }  // namespace
 
 void require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress) {
   const Program program = survey(source, options, progress);
   require_limits(program, options);
-  if (program.duration_s <= options.max_duration_s) return;
+  if (program.duration_s <= options.max_duration_s) return require_affordable_samples(options, program.duration_s);
   const bool dwell = program.longest.kind == program::Block::Kind::dwell;
   const double feed = program.longest_m / program.longest_s / mm_per_min;
   InvalidInput::Parts parts{.field = "block " + std::to_string(program.longest_block + 1) + " (line " +
@@ -108,7 +123,8 @@ void require_duration(program::Source& source, const SmoothingOptions& options, 
   throw InvalidInput(std::move(parts));
 }
 
-InvalidInput lasts_too_long(const SmoothingOptions& options, double planned_s, std::size_t block, std::size_t line) {
+void require_end(const SmoothingOptions& options, double planned_s, std::size_t block, std::size_t line) {
+  if (planned_s <= options.max_duration_s) return require_affordable_samples(options, planned_s);
   InvalidInput::Parts parts{.field = "program"};
   parts.rule = "lasts " + text(planned_s / hour_s, "h");
   if (line > 0) {
@@ -117,7 +133,7 @@ InvalidInput lasts_too_long(const SmoothingOptions& options, double planned_s, s
   parts.rule += " within the limits of the tool and the joints; " + allowed(options);
   parts.hint = "Is a joint's limit in another unit? ";
   parts.hint += settable;
-  return InvalidInput(std::move(parts));
+  throw InvalidInput(std::move(parts));
 }
 
 }  // namespace robomill::path

@@ -12,8 +12,9 @@ namespace robomill::path {
 /// @throws InvalidInput naming the limit, or the block and line that takes longest
 void require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress);
 
-/// That motion planned within every limit, up to a block, takes too long. Of the last two 0 where it is the whole.
-[[nodiscard]] InvalidInput lasts_too_long(const SmoothingOptions& options, double planned_s, std::size_t block,
-                                          std::size_t line);
+/// The same of motion planned within every limit, up to a block, before it is sampled. Of the last two 0 where it is
+/// the whole.
+/// @throws InvalidInput where it lasts too long, or its samples are more than may be taken (base/cost.hpp)
+void require_end(const SmoothingOptions& options, double planned_s, std::size_t block, std::size_t line);
 
 }  // namespace robomill::path

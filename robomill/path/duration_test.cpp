@@ -93,6 +93,25 @@ TEST(Duration, LimitsOfJointsCount) {
   }
 }
 
+// A day at 10 µs is eight thousand million samples, which is hours of work; what of it is asked for is known before.
+TEST(Duration, SamplesThatTakeTooLongAreRejectedBeforeAnyIsMade) {
+  SmoothingOptions options = test::published_options(Method::verified);
+  EXPECT_EQ(field_of([&] { require_end(options, 80'000.0, 0, 0); }), "accepted");
+  options.sample_period_s = 1e-5;
+  EXPECT_EQ(field_of([&] { require_end(options, 80'000.0, 0, 0); }), "sample_period_s");
+  const std::string said = rejected(straight(5.0, 1e-4), options);
+  EXPECT_NE(said.find("sample_period_s = 1e-05 s; would take about 5.6 h of one core"), std::string::npos) << said;
+}
+
+TEST(Duration, NoMachineFollowsMoreCloselyThanATenthOfAMicrometre) {
+  SmoothingOptions options = test::published_options(Method::verified);
+  options.tip_tolerance_m = 2e-11;
+  EXPECT_EQ(field_of([&] { options.validate(); }), "tip_tolerance_m");
+  options.tip_tolerance_m = 2e-5;
+  options.axis_tolerance_rad = 1e-9;
+  EXPECT_EQ(field_of([&] { options.validate(); }), "axis_tolerance_rad");
+}
+
 // From rest to rest along a line, one limit at a time: the closed forms against the plan.
 TEST(Duration, ClosedFormsAreLowerBoundsAndNear) {
   const double length_m = 0.05;

@@ -7,6 +7,15 @@ namespace robomill::path {
 void SmoothingOptions::validate() const {
   require_positive("tip_tolerance_m", tip_tolerance_m, "m", "0.02 mm suits finishing");
   require_positive("axis_tolerance_rad", axis_tolerance_rad, "rad", "0.02 deg suits finishing");
+  constexpr double finest_m = 1e-7, finest_rad = 1e-7;
+  if (tip_tolerance_m < finest_m) {
+    throw InvalidInput("tip_tolerance_m", tip_tolerance_m, "m", "must be at least 0.1 µm",
+                       "0.02 mm suits finishing; no machine follows so closely");
+  }
+  if (axis_tolerance_rad < finest_rad) {
+    throw InvalidInput("axis_tolerance_rad", axis_tolerance_rad, "rad", "must be at least 1e-7 rad, 6e-6 degrees",
+                       "0.02 deg suits finishing; no machine follows so closely");
+  }
   require_positive("max_velocity_m_per_s", max_velocity_m_per_s, "m/s");
   require_positive("max_acceleration_m_per_s2", max_acceleration_m_per_s2, "m/s^2");
   require_positive("max_jerk_m_per_s3", max_jerk_m_per_s3, "m/s^3");

@@ -179,14 +179,12 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
     samples.clear();
   };
   // Before a row is sampled, and slower again: how long it takes.
-  const auto require_end = [&] {
+  const auto look_at_end = [&] {
     const std::span<const Segment> kept = std::span<const Segment>(planner.motion()).first(planner.kept());
     if (kept.empty()) return;
     double planned_s = emitter.duration_s();
     for (const Segment& segment : kept) planned_s += duration_s(segment);
-    if (!(planned_s <= options.max_duration_s)) {
-      throw lasts_too_long(options, planned_s, emitter.at().block, emitter.at().line);
-    }
+    require_end(options, planned_s, emitter.at().block, emitter.at().line);
   };
   // A row that would break limits is planned again before it is taken over.
   const auto revise = [&] {
@@ -207,9 +205,9 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
   run(to_plan, posture, kinematics, planner, progress, out.blocks, [&] {
     static_cast<void>(emitter.add(planner.path(), {}, samples));
     planner.path().clear();
-    require_end();
+    look_at_end();
     revise();
-    require_end();
+    look_at_end();
     const double from_s = processor_s();
     double sent_s = 0.0;
     const std::span<const Segment> kept = std::span<const Segment>(planner.motion()).first(planner.kept());
@@ -241,7 +239,7 @@ void plan_published(program::Source& source, const robot::Kinematics& kinematics
   progress.check();
   double begin_s = processor_s();
   const FirPlan plan = plan_fir(program, kinematics, posture, options);
-  if (!(plan.duration_s <= options.max_duration_s)) throw lasts_too_long(options, plan.duration_s, 0, 0);
+  require_end(options, plan.duration_s, 0, 0);
   out.plan_s = processor_s() - begin_s;
   out.blocks = program.blocks.size();
   out.duration_s = plan.duration_s;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -19,16 +20,16 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/toml_edit.hpp"
-#include "robomill/io/toml_values.hpp"
-#include "robomill/serve/documents.hpp"
 #include "robomill/serve/error_json.hpp"
-#include "robomill/serve/files/inspect.hpp"
+#include "robomill/serve/file_answers.hpp"
 #include "robomill/serve/http/target.hpp"
 #include "robomill/serve/job_runner.hpp"
 #include "robomill/serve/latest.hpp"
 #include "robomill/serve/live_lobes.hpp"
 #include "robomill/serve/live_program.hpp"
 #include "robomill/serve/monitor_sessions.hpp"
+#include "robomill/serve/process/job_process.hpp"
+#include "robomill/serve/process/monitor_service.hpp"
 #include "robomill/serve/tap_tests.hpp"
 #include "robomill/serve/toml_literal.hpp"
 #include "robomill/serve/worker.hpp"
@@ -40,9 +41,6 @@ namespace {
 constexpr std::uint64_t live_body = std::uint64_t{1} << 16;  // so short that the thread of all connections reads it
 constexpr std::uint64_t small_body = std::uint64_t{1} << 20;
 constexpr std::uint64_t text_body = std::uint64_t{2} << 20;  // a text of 1 MB with its escapes
-constexpr std::size_t most_edited_bytes = std::size_t{1} << 20;
-constexpr std::size_t most_fields = 5000;
-constexpr const char* too_long_to_edit = "the text is longer than 1 MB";
 
 struct Route {
   std::string_view method, path;  ///< "/api/jobs/" takes a number behind it, and perhaps a word
@@ -79,6 +77,12 @@ bool fits(const Route& route, std::string_view path) {
                                    : path == route.path;
 }
 
+/// Whether what is asked reads or writes files, or lists them. What runs can be looked at and ended without its folder.
+bool is_of_folder(const HttpRequest& request) {
+  if (request.method == "GET") return request.path == "/api/state" || request.path == "/api/file";
+  return request.method != "DELETE" && request.path != "/api/edit";
+}
+
 io::Json file_object(const FolderFile& file) {
   const auto time = std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(file.modified));
   return {{"path", file.path},
@@ -88,38 +92,57 @@ io::Json file_object(const FolderFile& file) {
           {"modified", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", time)}};
 }
 
-io::Json fields_of(const std::string& text, const std::string& name) {
-  io::Json out = io::Json::array();
-  for (const io::TomlValue& value : io::toml_values(text, name, most_fields)) {
-    out.push_back({{"key", value.key},
-                   {"value", value.value},
-                   {"line", value.line},
-                   {"comment", io::text_or_null(value.comment)}});
-  }
-  return out;
+/// How jobs are run: each in a process of its own where there is a program for that.
+RunJob runner_of(const Folder& folder, const WorkerOptions& worker) {
+  if (worker.command.empty()) return run_here(folder.root());
+  return [worker](const JobRequest& request, const Progress::Report& report, const std::atomic<bool>& stop) {
+    return run_in_process(worker, request, report, stop);
+  };
+}
+
+/// One that is kept; none where there is no program for it.
+std::unique_ptr<WorkerProcess> kept(const WorkerOptions& worker) {
+  return worker.command.empty() ? nullptr : std::make_unique<WorkerProcess>(worker);
+}
+
+std::unique_ptr<MonitorService> service_of(WorkerOptions worker, const Api::Publish& publish) {
+  if (worker.command.empty()) return nullptr;
+  worker.connects = true;
+  return std::make_unique<MonitorService>(std::move(worker), publish);
 }
 
 }  // namespace
 
 struct Api::Parts {
-  Parts(const Folder& served, OpenStream open_stream, Publish publisher)
+  Parts(const Folder& served, OpenStream open_stream, const WorkerOptions& worker, Publish publisher)
       : folder(served),
         publish(std::move(publisher)),
-        jobs(folder.root(), [this](const std::string& job) { publish("job", job); }),
+        live(kept(worker)),
+        reader(kept(worker)),
+        jobs(
+            folder.root(), [this](const std::string& job) { publish("job", job); }, runner_of(folder, worker)),
         taps(folder, open_stream, publish),
-        monitors(folder, std::move(open_stream), publish) {}
-
-  [[nodiscard]] std::filesystem::path path_of(const io::Json& body, const char* key) const {
-    return folder.resolve(body.at(key).get<std::string>());
+        monitors(folder, std::move(open_stream), publish),
+        monitor_service(service_of(worker, publish)) {}
+  /// So that no thread waits for an answer any more.
+  ~Parts() {
+    if (live) live->end();
+    if (reader) reader->end();
+    if (monitor_service) monitor_service->end();
   }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
   [[nodiscard]] HttpResponse state();
   [[nodiscard]] HttpResponse get_file(const HttpRequest& request) const;
   [[nodiscard]] HttpResponse put_file(const HttpRequest& request);
-  [[nodiscard]] HttpResponse check(const io::Json& body) const;
+  [[nodiscard]] HttpResponse read_file_of(const HttpRequest& request);
   [[nodiscard]] static HttpResponse edit(const io::Json& body);
   [[nodiscard]] HttpResponse start_job(const io::Json& body);
   [[nodiscard]] HttpResponse about_job(const HttpRequest& request);
   [[nodiscard]] HttpResponse answer(const HttpRequest& request);
+  [[nodiscard]] HttpResponse answer_monitors(const HttpRequest& request);
+  [[nodiscard]] Worker& worker_of(const HttpRequest& request);
   void answer_latest(const ClientOrder& order, std::function<std::string(Progress&)> compute, const Reply& reply);
   [[nodiscard]] HttpResponse answer_live(const HttpRequest& request, const Reply& reply);
   void watch(const std::stop_token& stop);
@@ -127,12 +150,17 @@ struct Api::Parts {
   std::mutex listing;  ///< of the folder's list, which remembers
   Folder folder;
   Publish publish;
+  std::unique_ptr<WorkerProcess> live;    ///< lobes; null: in this process
+  std::unique_ptr<WorkerProcess> reader;  ///< of files that a request names; null: in this process
   JobRunner jobs;
-  TapTests taps;             ///< of the worker alone
-  MonitorSessions monitors;  ///< of the worker alone
-  LiveLobes lobes;           ///< of latest's thread alone
+  TapTests taps;                                    ///< of tap_worker alone
+  MonitorSessions monitors;                         ///< of monitor_worker alone
+  std::unique_ptr<MonitorService> monitor_service;  ///< in place of them; null: in this process
+  LiveLobes lobes;                                  ///< of latest's thread alone
   Latest latest;
-  Worker files{64};
+  // Each waits for another process or device, and no other for it. The first asks nobody: state and cancelled jobs are
+  // answered whatever hangs.
+  Worker at_hand{64}, reader_worker{64}, monitor_worker{64}, tap_worker{64};
   std::mutex waiting;
   std::condition_variable_any ended;
   std::jthread watcher{[this](const std::stop_token& stop) { watch(stop); }};
@@ -189,22 +217,14 @@ HttpResponse Api::Parts::put_file(const HttpRequest& request) {
   return json_response({{"etag", Folder::tag_of(request.body)}});
 }
 
-HttpResponse Api::Parts::check(const io::Json& body) const {
-  const std::filesystem::path path = path_of(body, "path");
-  const std::string text = body.at("text");
-  if (text.size() > most_edited_bytes) return error_response(413, too_long_to_edit);
-  const std::string kind = kind_of_toml(text);
-  std::optional<InvalidInput> error;
-  io::Json fields = io::Json::array();
-  try {
-    fields = fields_of(text, path.string());
-    error = check_document(kind, path, text);
-  } catch (const InvalidInput& found) {
-    error = found;
-  }
-  return json_response({{"kind", kind},
-                        {"error", error ? error_object(*error, folder.root()) : io::Json(nullptr)},
-                        {"fields", std::move(fields)}});
+/// What a file says is read where it can do no harm.
+HttpResponse Api::Parts::read_file_of(const HttpRequest& request) {
+  const bool checks = request.path == "/api/check";
+  if (!reader) return checks ? check_text(folder, request.body) : inspect_file(folder, request.body);
+  return reader->ask({.kind = checks ? Frame::check : Frame::inspect,
+                      .body = request.body,
+                      .most = std::chrono::seconds(30),
+                      .patience = std::chrono::milliseconds(500)});
 }
 
 HttpResponse Api::Parts::edit(const io::Json& body) {
@@ -240,18 +260,29 @@ HttpResponse Api::Parts::about_job(const HttpRequest& request) {
   return {.body = std::move(report)};
 }
 
+HttpResponse Api::Parts::answer_monitors(const HttpRequest& request) {
+  return monitor_service ? monitor_service->answer(request) : monitors.answer(request);
+}
+
+Worker& Api::Parts::worker_of(const HttpRequest& request) {
+  const std::string& path = request.path;
+  if (path.starts_with("/api/monitors")) return monitor_worker;
+  if (path.starts_with("/api/tap")) return tap_worker;
+  return path == "/api/check" || path == "/api/inspect" ? reader_worker : at_hand;
+}
+
 HttpResponse Api::Parts::answer(const HttpRequest& request) {
   const std::string& path = request.path;
+  if (is_of_folder(request)) require_folder(folder.root());
   if (path == "/api/state") return state();
   if (path == "/api/file") return request.method == "GET" ? get_file(request) : put_file(request);
   if (path == "/api/verbs") return json_response(verbs_json());
   if (path.starts_with("/api/jobs/")) return about_job(request);
   if (path == "/api/jobs" && request.method == "GET") return json_response(jobs.list());
   if (path.starts_with("/api/tap")) return taps.answer(request);
-  if (path.starts_with("/api/monitors")) return monitors.answer(request);
+  if (path.starts_with("/api/monitors")) return answer_monitors(request);
+  if (path == "/api/check" || path == "/api/inspect") return read_file_of(request);
   const io::Json body = io::parse_json(request.body, "request");
-  if (path == "/api/inspect") return json_response(inspect(path_of(body, "path")));
-  if (path == "/api/check") return check(body);
   if (path == "/api/jobs") return start_job(body);
   if (path == "/api/edit") return edit(body);
   return error_response(404, "there is no such address");
@@ -279,16 +310,22 @@ void Api::Parts::answer_latest(const ClientOrder& order, std::function<std::stri
 /// Status 0: it replies by itself, later.
 HttpResponse Api::Parts::answer_live(const HttpRequest& request, const Reply& reply) {
   if (request.path == "/api/lobes") {
+    require_folder(folder.root());
     LiveLobesRequest asked = read_live_lobes_request(request.body);
     asked.file = folder.resolve(asked.file.string());
     answer_latest(
-        asked.order, [this, asked](Progress& progress) { return lobes.answer(asked, progress); }, reply);
+        asked.order,
+        [this, asked, body = request.body](Progress& progress) {
+          return live ? live_answer(*live, Frame::lobes, body, progress) : lobes.answer(asked, progress);
+        },
+        reply);
   } else {
     const LiveProgramRequest asked = read_live_program_request(request.body);
-    const auto plan = jobs.plan(asked.job);
-    if (!plan) return error_response(404, "there is no such job with a program, or it was forgotten; run it again");
+    TurnProgram turn = jobs.turn(asked.job);
+    if (!turn) return error_response(404, "there is no such job with a program, or it was forgotten; run it again");
     answer_latest(
-        asked.order, [asked, plan](Progress& progress) { return live_program(asked, *plan, progress); }, reply);
+        asked.order, [turn = std::move(turn), body = request.body](Progress& progress) { return turn(body, progress); },
+        reply);
   }
   return {.status = 0};
 }
@@ -315,8 +352,8 @@ void Api::Parts::watch(const std::stop_token& stop) {
   }
 }
 
-Api::Api(const Folder& folder, OpenStream open_stream, Publish publish)
-    : parts_(std::make_unique<Parts>(folder, std::move(open_stream), std::move(publish))) {}
+Api::Api(const Folder& folder, OpenStream open_stream, const WorkerOptions& worker, Publish publish)
+    : parts_(std::make_unique<Parts>(folder, std::move(open_stream), worker, std::move(publish))) {}
 
 Api::~Api() = default;
 
@@ -338,10 +375,11 @@ void Api::handle(HttpRequest request, const Reply& reply) {
     if (at_once.status != 0) reply(at_once);
     return;
   }
+  Worker& worker = parts_->worker_of(request);
   auto work = [this, request = std::move(request), reply] {
     reply(answer_of(parts_->folder.root(), [&] { return parts_->answer(request); }));
   };
-  if (!parts_->files.post(std::move(work))) reply(error_response(503, "too many requests wait; try later"));
+  if (!worker.post(std::move(work))) reply(error_response(503, "too many requests wait; try later"));
 }
 
 }  // namespace robomill::serve

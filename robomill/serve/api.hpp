@@ -7,6 +7,7 @@
 
 #include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/http/server.hpp"
+#include "robomill/serve/process/worker_process.hpp"
 #include "robomill/serve/serve.hpp"
 
 // Method: robomill/serve/README.md, "Interface"
@@ -19,7 +20,8 @@ class Api {
   /// An event for every page that is open: its name, its data.
   using Publish = std::function<void(std::string_view event, std::string_view data)>;
   /// @param open_stream  ServeOptions'
-  Api(const Folder& folder, OpenStream open_stream, Publish publish);
+  /// @param worker       what works in processes of its own; without a command all is done in this one
+  Api(const Folder& folder, OpenStream open_stream, const WorkerOptions& worker, Publish publish);
   ~Api();
   Api(const Api&) = delete;
   Api& operator=(const Api&) = delete;

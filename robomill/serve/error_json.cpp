@@ -1,6 +1,10 @@
 #include "robomill/serve/error_json.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <cstddef>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -8,13 +12,60 @@
 #include "robomill/base/progress.hpp"
 
 namespace robomill::serve {
-std::string client_text(std::string text, const std::filesystem::path& root) {
-  const std::string way = root.string() + "/";
-  for (std::size_t at = text.find(way); at != std::string::npos; at = text.find(way, at)) text.erase(at, way.size());
-  return printable(text);
+namespace {
+
+/// Whether a name goes on at a place: what stands before it is not all of it.
+bool goes_on(const std::string& text, std::size_t at) {
+  const auto is_of_name = [&text](std::size_t place) {
+    if (place >= text.size()) return false;
+    const auto letter = static_cast<unsigned char>(text[place]);
+    return std::isalnum(letter) != 0 || letter == '_' || letter == '-' || letter >= 0x80;
+  };
+  return is_of_name(at) || (at < text.size() && text[at] == '.' && is_of_name(at + 1));
 }
 
-io::Json error_object(const InvalidInput& error, const std::filesystem::path& root) {
+/// Options of the command line are those of a request here: "--sample-rate-hz" is "options.sample_rate_hz".
+InvalidInput in_words_of_requests(const InvalidInput& error) {
+  InvalidInput::Parts parts = error.parts();
+  if (!parts.field.starts_with("--")) return error;
+  parts.field = "options." + parts.field.substr(2);
+  std::ranges::replace(parts.field, '-', '_');
+  return InvalidInput(std::move(parts));
+}
+
+}  // namespace
+
+std::string without_root(std::string text, const std::filesystem::path& root) {
+  if (root == root.root_path()) return text;  // all paths are below it, and "//" is in no path
+  const std::string way = root.string();
+  std::size_t at = text.find(way);
+  if (at == std::string::npos) return text;
+  std::string out;  // built once: erased in place, a long text with many paths would be moved for each
+  std::size_t done = 0;
+  for (; at != std::string::npos; at = text.find(way, done)) {
+    out.append(text, done, at - done);
+    done = at + way.size();
+    if (done < text.size() && text[done] == '/') {
+      ++done;  // what follows is below it
+    } else {
+      out += goes_on(text, done) ? way : root.filename().string();
+    }
+  }
+  return out.append(text, done, std::string::npos);
+}
+
+std::string client_text(std::string text, const std::filesystem::path& root) {
+  return printable(without_root(std::move(text), root));
+}
+
+io::Json AnsweredElsewhere::error() const {
+  const io::Json body = io::Json::parse(response_.body, nullptr, false);
+  if (body.is_object() && body.contains("error") && body["error"].is_object()) return body["error"];
+  return error_object(response_.body.substr(0, 200));
+}
+
+io::Json error_object(const InvalidInput& given, const std::filesystem::path& root) {
+  const InvalidInput error = in_words_of_requests(given);
   const InvalidInput::Parts& parts = error.parts();
   std::string file = client_text(parts.where, root);
   io::Json line = nullptr;
@@ -58,6 +109,8 @@ HttpResponse answer_of(const std::filesystem::path& root, const std::function<Ht
     return json_response({{"error", error_object(error, root)}}, 400);
   } catch (const Interrupted&) {
     return json_response({{"superseded", true}}, 409);
+  } catch (const AnsweredElsewhere& other) {
+    return other.response();
   } catch (const io::Json::exception& error) {
     return error_response(400, "the body is not the JSON that is expected: " + std::string(error.what()));
   } catch (const std::bad_alloc&) {

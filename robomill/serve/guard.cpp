@@ -31,6 +31,20 @@ std::string_view cookie_value(std::string_view cookies, std::string_view name) {
 
 }  // namespace
 
+std::string host_address(const std::string& host) {
+  return host == "localhost" ? "127.0.0.1" : host;
+}
+
+bool is_own_host(std::string_view given, const std::string& listening, int port) {
+  if (!is_loopback(listening)) return !given.empty();
+  for (const std::string& name :
+       {listening, std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]")}) {
+    if (given == fmt::format("{}:{}", name, port)) return true;
+    if (port == 80 && given == name) return true;
+  }
+  return false;
+}
+
 bool is_loopback(const std::string& host) {
   return host.starts_with("127.") || host == "::1";
 }
@@ -47,15 +61,6 @@ bool equal_secrets(std::string_view given, std::string_view secret) {
 Guard::Guard(std::string host, std::string token)
     : host_(std::move(host)), token_(std::move(token)), write_token_(random_text()) {}
 
-bool Guard::is_own_host(std::string_view host) const {
-  if (!is_loopback(host_)) return !host.empty();  // by whatever name it is reached; the access token protects it
-  for (const std::string& name : {host_, std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]")}) {
-    if (host == fmt::format("{}:{}", name, port_)) return true;
-    if (port_ == 80 && host == name) return true;
-  }
-  return false;
-}
-
 std::string Guard::cookie_name() const {
   return fmt::format("robomill-{}=", port_);
 }
@@ -71,6 +76,12 @@ bool Guard::has_access(const HttpRequest& request) const {
          cookie_for(request).has_value();
 }
 
+bool Guard::knows(const HttpRequest& request) const {
+  if (!is_own_host(request.header("host"), host_, port_)) return false;
+  if (!token_.empty()) return has_access(request);
+  return equal_secrets(request.header("x-robomill-token"), write_token_);
+}
+
 std::optional<std::string> Guard::cookie_for(const HttpRequest& request) const {
   const auto given = request.query.find("token");
   if (token_.empty() || request.path != "/" || given == request.query.end()) return std::nullopt;
@@ -80,7 +91,8 @@ std::optional<std::string> Guard::cookie_for(const HttpRequest& request) const {
 
 std::optional<HttpResponse> Guard::reject(const HttpRequest& request) const {
   const std::string& host = request.header("host");
-  if (!is_own_host(host)) return error_response(403, "this is not the host that is asked for");
+  // One that others reach is protected by its access token.
+  if (!is_own_host(host, host_, port_)) return error_response(403, "this is not the host that is asked for");
   const std::string& origin = request.header("origin");
   if (!origin.empty() && origin != "http://" + host) return error_response(403, "another site must not ask");
   const std::string& site = request.header("sec-fetch-site");

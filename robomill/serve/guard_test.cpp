@@ -77,6 +77,29 @@ TEST(Guard, AccessTokenByAddressCookieOrHeader) {
   EXPECT_EQ(status(guard, page), 401);
 }
 
+TEST(Guard, KnowsWhoProvesIt) {
+  const std::string host = "127.0.0.1:8437", token = "abcdefghijklmnop";
+  Guard open("127.0.0.1", ""), closed("127.0.0.1", token);
+  for (Guard* guard : {&open, &closed}) guard->set_port(8437);
+  const auto get = [&](const char* name, const std::string& value, const std::string& to) {
+    return request("GET", "/api/state", {{"host", to}, {name, value}});
+  };
+  // Without an access token everybody may ask; who has a page of this server is known.
+  EXPECT_FALSE(open.knows(get("x", "", host)));
+  EXPECT_TRUE(open.knows(get("x-robomill-token", open.write_token(), host)));
+  EXPECT_FALSE(open.knows(get("x-robomill-token", open.write_token(), "evil.example:8437")));
+  EXPECT_FALSE(closed.knows(get("x-robomill-token", closed.write_token(), host)));
+  EXPECT_TRUE(closed.knows(get("authorization", "Bearer " + token, host)));
+}
+
+TEST(Guard, LocalhostIsAnAddress) {
+  EXPECT_EQ(host_address("localhost"), "127.0.0.1");
+  EXPECT_EQ(host_address("192.168.1.2"), "192.168.1.2");
+  EXPECT_TRUE(is_own_host("localhost:9110", "127.0.0.1", 9110));
+  EXPECT_FALSE(is_own_host("evil.example:9110", "127.0.0.1", 9110));
+  EXPECT_TRUE(is_own_host("mill.local:9110", "0.0.0.0", 9110));
+}
+
 TEST(Guard, Loopback) {
   EXPECT_TRUE(is_loopback("127.0.0.1"));
   EXPECT_TRUE(is_loopback("::1"));

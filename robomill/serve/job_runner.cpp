@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/serve/error_json.hpp"
+#include "robomill/serve/live_program.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -29,7 +32,7 @@ struct JobRunner::Job {
   double fraction = 0.0;
   Clock::time_point started = {}, ended = {}, announced = {};
   io::Json error = nullptr;
-  JobOutcome outcome = {};
+  JobRun result = {};
 
   [[nodiscard]] bool is_over() const { return state != State::queued && state != State::running; }
   [[nodiscard]] io::Json json() const {
@@ -42,22 +45,38 @@ struct JobRunner::Job {
             {"output", io::text_or_null(request.output)},
             {"options", request.options},
             {"state", state_names[static_cast<std::size_t>(state)]},
-            {"exit", state == State::done     ? io::Json(outcome.shortfall.empty() ? 0 : 3)
+            {"exit", state == State::done     ? io::Json(result.outcome.shortfall.empty() ? 0 : 3)
                      : state == State::failed ? io::Json(1)
                                               : io::Json(nullptr)},
             {"task", task},
             {"fraction", fraction},
             {"seconds", began ? io::number(seconds) : io::Json(nullptr)},
             {"error", error},
-            {"shortfall", io::text_or_null(outcome.shortfall)},
-            {"summary", io::text_or_null(outcome.summary)},
-            {"report", !outcome.report.empty()}};
+            {"shortfall", io::text_or_null(result.outcome.shortfall)},
+            {"summary", io::text_or_null(result.outcome.summary)},
+            {"report", !result.outcome.report.empty()}};
   }
 };
 
-JobRunner::JobRunner(std::filesystem::path root, std::function<void(const std::string&)> changed)
+RunJob run_here(std::filesystem::path root) {
+  return [root = std::move(root)](const JobRequest& request, const Progress::Report& report,
+                                  const std::atomic<bool>& stop) {
+    Progress progress(report, &stop);
+    JobRun run = {.outcome = run_verb(request, root, progress)};
+    if (const std::shared_ptr<const jobs::PlanResult> plan = std::move(run.outcome.plan)) {
+      run.blocks = plan->blocks->rows.size();
+      run.turn = [plan](const std::string& body, Progress& turning) {
+        return live_program(read_live_program_request(body), *plan, turning);
+      };
+    }
+    return run;
+  };
+}
+
+JobRunner::JobRunner(std::filesystem::path root, std::function<void(const std::string&)> changed, RunJob run_job)
     : root_(std::move(root)),
       changed_(std::move(changed)),
+      run_job_(std::move(run_job)),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 JobRunner::~JobRunner() {
@@ -112,29 +131,31 @@ void JobRunner::run(const std::shared_ptr<Job>& job) {
     change();
   };
   announce(*job);
-  Progress progress(
-      [&](const std::string& task, double fraction) {
-        constexpr std::chrono::milliseconds pause(200);
-        bool due = false;
-        set([&] {
-          due = Clock::now() - job->announced > pause || task != job->task;
-          job->task = task;
-          job->fraction = fraction;
-          if (due) job->announced = Clock::now();
-        });
-        if (due) announce(*job);
-      },
-      &job->stop);
-  JobOutcome outcome;
+  const auto report = [&](const std::string& task, double fraction) {
+    constexpr std::chrono::milliseconds pause(200);
+    bool due = false;
+    set([&] {
+      due = Clock::now() - job->announced > pause || task != job->task;
+      job->task = task;
+      job->fraction = fraction;
+      if (due) job->announced = Clock::now();
+    });
+    if (due) announce(*job);
+  };
+  JobRun result;
   State state = State::failed;
   io::Json error = nullptr;
   try {
-    progress.check();
-    outcome = run_verb(job->request, root_, progress);
-    outcome.shortfall = client_text(std::move(outcome.shortfall), root_);
+    if (job->stop) throw Interrupted();
+    result = run_job_(job->request, report, job->stop);
+    result.outcome.shortfall = client_text(std::move(result.outcome.shortfall), root_);
+    result.outcome.summary = without_root(std::move(result.outcome.summary), root_);
+    result.outcome.report = without_root(std::move(result.outcome.report), root_);
     state = State::done;
   } catch (const InvalidInput& found) {
     error = error_object(found, root_);
+  } catch (const AnsweredElsewhere& found) {
+    error = found.error();
   } catch (const Interrupted&) {
     state = State::cancelled;
   } catch (const std::bad_alloc&) {
@@ -144,7 +165,7 @@ void JobRunner::run(const std::shared_ptr<Job>& job) {
   }
   set([&] {
     job->state = state;
-    job->outcome = std::move(outcome);
+    job->result = std::move(result);
     job->error = std::move(error);
     job->ended = Clock::now();
     job->fraction = state == State::done ? 1.0 : job->fraction;
@@ -159,12 +180,12 @@ void JobRunner::forget_old() {
   std::size_t plans = 0;
   std::size_t blocks = 0;
   for (auto job = jobs_.rbegin(); job != jobs_.rend(); ++job) {
-    JobOutcome& outcome = (*job)->outcome;
-    if (!outcome.report.empty() && ++reports > most_reports) outcome.report = {};
-    if (!outcome.plan) continue;
-    blocks += outcome.plan->blocks->rows.size();
+    JobRun& result = (*job)->result;
+    if (!result.outcome.report.empty() && ++reports > most_reports) result.outcome.report = {};
+    if (!result.turn) continue;
+    blocks += result.blocks;
     const bool many = ++plans > most_plans || (plans > 1 && blocks > most_plan_blocks);
-    if (many) outcome.plan.reset();
+    if (many) result.turn = {};
   }
   while (jobs_.size() > most_kept) {
     const auto oldest = std::ranges::find_if(jobs_, [](const std::shared_ptr<Job>& job) { return job->is_over(); });
@@ -196,13 +217,13 @@ io::Json JobRunner::job(int id) const {
 std::string JobRunner::report(int id) const {
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<Job> job = find(id);
-  return job ? job->outcome.report : std::string();
+  return job ? job->result.outcome.report : std::string();
 }
 
-std::shared_ptr<const jobs::PlanResult> JobRunner::plan(int id) const {
+TurnProgram JobRunner::turn(int id) const {
   const std::lock_guard lock(mutex_);
   const std::shared_ptr<Job> job = find(id);
-  return job ? job->outcome.plan : nullptr;
+  return job ? job->result.turn : TurnProgram();
 }
 
 bool JobRunner::cancel(int id) {

@@ -13,12 +13,31 @@
 #include <string>
 #include <thread>
 
+#include "robomill/base/progress.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/serve/job_verbs.hpp"
 
 // Method: robomill/serve/README.md, "Jobs"
 
 namespace robomill::serve {
+
+/// Answers the body of POST /api/program of one job, from one thread after the other.
+using TurnProgram = std::function<std::string(const std::string& body, Progress& progress)>;
+
+/// What a job that was run came to. The outcome's plan is not kept.
+struct JobRun {
+  JobOutcome outcome = {};
+  std::size_t blocks = 0;  ///< of its program that were judged
+  TurnProgram turn = {};   ///< with another γ; none: no program was judged
+};
+
+/// Runs a request that was checked. @throws as run_verb
+using RunJob =
+    std::function<JobRun(const JobRequest& request, const Progress::Report& report, const std::atomic<bool>& stop)>;
+
+/// By run_verb, in this process.
+/// @param root  the folder that is served
+[[nodiscard]] RunJob run_here(std::filesystem::path root);
 
 /// Runs jobs, one at a time, in their order; keeps what the last ones came to.
 class JobRunner {
@@ -28,7 +47,7 @@ class JobRunner {
   /// Plans of programs that are kept: the last, and the one before where both have no more blocks than that.
   static constexpr std::size_t most_plans = 2, most_plan_blocks = 50000;
   /// @param changed  is given a job's JSON on every change, at most five times a second while it runs; from any thread
-  JobRunner(std::filesystem::path root, std::function<void(const std::string&)> changed);
+  JobRunner(std::filesystem::path root, std::function<void(const std::string&)> changed, RunJob run_job);
   ~JobRunner();  ///< stops the job that runs
   JobRunner(const JobRunner&) = delete;
   JobRunner& operator=(const JobRunner&) = delete;
@@ -42,8 +61,8 @@ class JobRunner {
   [[nodiscard]] io::Json job(int id) const;
   /// The data of its page; empty where there is none.
   [[nodiscard]] std::string report(int id) const;
-  /// What a plan of a program came to; null where there is none, or it was forgotten.
-  [[nodiscard]] std::shared_ptr<const jobs::PlanResult> plan(int id) const;
+  /// How a job's program is judged with another γ; none where there is no program, or it was forgotten.
+  [[nodiscard]] TurnProgram turn(int id) const;
   /// False where it is not remembered.
   bool cancel(int id);
 
@@ -57,6 +76,7 @@ class JobRunner {
 
   std::filesystem::path root_;
   std::function<void(const std::string&)> changed_;
+  RunJob run_job_;
   mutable std::mutex mutex_;
   std::deque<std::shared_ptr<Job>> jobs_;
   int last_ = 0;

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/output_places.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
+#include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/files/named_files.hpp"
 #include "robomill/serve/verb_options.hpp"
 #include "robomill/serve/verb_runs.hpp"
@@ -31,7 +32,6 @@ struct Verb {
   std::vector<std::string_view> inputs;   ///< kinds of files
   bool several = false;                   ///< of them
   std::string_view output;                ///< a name for it
-  bool writes_folder = false;             ///< the output is a folder
   std::optional<Document> document = {};  ///< none: a folder, or what the job itself knows the endings of
   JobOutcome (*run)(const VerbJob&, Progress&);
   std::vector<VerbOption> options;
@@ -79,7 +79,7 @@ const std::vector<VerbOption> joint_options = {
 
 const std::vector<VerbOption> simulate_options = {
     {.name = "at", .does = "Spindle speed (rpm), axial depth (mm)", .takes = Takes::point, .required = true},
-    {.name = "seconds", .does = "How long to cut (2 s)", .takes = Takes::number, .above = 0, .at_most = 3600},
+    {.name = "seconds", .does = "How long to cut (2 s)", .takes = Takes::number, .above = 0},
     {.name = "sample_rate_hz", .does = "Sample rate of the output (10240 Hz)", .takes = Takes::number, .above = 0},
     flag_option("linear", "Without loss of contact, as lobes take the cut"),
     seed_option};
@@ -125,7 +125,6 @@ const Verb plan_verb = {
     .does = "Run the job",
     .inputs = {"job"},
     .output = "out",
-    .writes_folder = true,
     .run = &run_plan,
     .options = {flag_option("accept_fit", "Go on with modes that do not describe the FRFs"), seed_option}};
 
@@ -293,57 +292,34 @@ std::vector<std::string> read_inputs(const io::Json& body) {
   return input.get<std::vector<std::string>>();
 }
 
-/// What a request reads and writes. Paths lead to the files themselves.
+/// What a request reads and writes, each as far as it says itself.
 struct Places {
-  std::vector<fs::path> read = {}, written = {}, folders = {};  ///< folders: that files are written into
+  std::vector<fs::path> read = {}, written = {};
 };
 
 Places places_of(const Verb& verb, const JobRequest& request, const ResolvePath& resolve) {
   Places out;
-  const auto add = [&resolve](std::vector<fs::path>& list, const std::string& path) {
-    std::error_code error;
-    const fs::path place = resolve(path);
-    const fs::path real = fs::weakly_canonical(place, error);
-    list.push_back(error ? place.lexically_normal() : real);
-  };
+  const auto add = [&resolve](std::vector<fs::path>& list, const std::string& path) { list.push_back(resolve(path)); };
   for (const std::string& input : request.inputs) add(out.read, input);
-  if (!request.output.empty()) add(verb.writes_folder ? out.folders : out.written, request.output);
+  if (!request.output.empty()) add(out.written, request.output);
   for (const VerbOption& option : verb.options) {
     const auto given = request.options.find(option.name);
     if (given == request.options.end()) continue;
     if (option.takes == Takes::file) add(out.read, given->get<std::string>());
-    if (option.takes == Takes::new_file) add(out.written, given->get<std::string>());
-    if (option.takes == Takes::new_folder) add(out.folders, given->get<std::string>());
+    const bool is_written = option.takes == Takes::new_file || option.takes == Takes::new_folder;
+    if (is_written) add(out.written, given->get<std::string>());
     if (option.takes != Takes::files) continue;
     for (const io::Json& one : *given) add(out.read, one.get<std::string>());
-  }
-  const std::vector<fs::path> documents = out.read;
-  for (const fs::path& document : documents) {
-    for (const fs::path& file : files_named_in(document)) {
-      std::error_code error;
-      const fs::path real = fs::canonical(file, error);
-      out.read.push_back(error ? file : real);
-    }
   }
   return out;
 }
 
-/// What a verb writes stands in the place of nothing that it reads, nor of something else that it writes.
+/// Before the work, of what can be known then; while it runs, run_verb asks the same of every file.
 void require_places_apart(const Places& places) {
-  const auto overwritten = [](const fs::path& place, const char* why) {
-    return InvalidInput("output", fmt::format("{} is {} by this job; it is not overwritten", place.string(), why));
-  };
-  const std::vector<fs::path>& written = places.written;
-  for (auto place = written.begin(); place != written.end(); ++place) {
-    if (std::ranges::find(places.read, *place) != places.read.end()) throw overwritten(*place, "read");
-    if (std::find(written.begin(), place, *place) != place) throw overwritten(*place, "written twice");
-  }
-  for (const fs::path& file : places.read) {
-    const fs::path folder = file.parent_path();
-    if (std::ranges::find(places.folders, folder) == places.folders.end()) continue;
-    throw InvalidInput("output",
-                       fmt::format("{} is read by this job, and other files are written beside it", file.string()),
-                       "Give a folder of its own");
+  const io::OutputPlaces outputs(places.written);
+  for (const fs::path& document : places.read) {
+    io::require_no_output(document);
+    for (const fs::path& file : files_named_in(document)) io::require_no_output(file);
   }
 }
 
@@ -371,9 +347,13 @@ JobRequest read_job_request(const io::Json& body, const ResolvePath& resolve) {
 }
 
 JobOutcome run_verb(const JobRequest& request, const fs::path& root, Progress& progress) {
+  require_folder(root);
   const VerbJob job(request, root);
+  const auto in_root = [&root](const std::string& path) { return root / path; };
+  const Verb& verb = verb_of(request.verb);
+  const io::OutputPlaces outputs(places_of(verb, request, in_root).written);
   if (!request.output.empty()) io::make_folder(job.output().parent_path());
-  return verb_of(request.verb).run(job, progress);
+  return verb.run(job, progress);
 }
 
 io::Json verbs_json() {

@@ -244,7 +244,7 @@ TEST_F(JobVerbs, RequestsAreCheckedBeforeTheyWait) {
             std::string::npos);
   EXPECT_NE(with("secnds", 1).find("options.secnds: is no option of simulate. Did you mean seconds?"),
             std::string::npos);
-  EXPECT_NE(with("seconds", -1).find("options.seconds = -1; must be a number > 0 and <= 3600"), std::string::npos);
+  EXPECT_NE(with("seconds", -1).find("options.seconds = -1; must be a number > 0"), std::string::npos);
   EXPECT_NE(with("seconds", "long").find("must be a number"), std::string::npos);
   EXPECT_NE(with("at", {6000}).find("options.at = [6000]; must be [spindle speed in rpm"), std::string::npos);
   EXPECT_NE(with("at", {0, 1}).find("must be [spindle speed"), std::string::npos);
@@ -267,19 +267,20 @@ TEST_F(JobVerbs, RequestsAreCheckedBeforeTheyWait) {
 }
 
 TEST_F(JobVerbs, NothingThatIsReadIsOverwritten) {
-  EXPECT_NE(no({{"verb", "coefficients"}, {"input", "a/slots.toml"}, {"output", "a/slots.toml"}}).find("overwritten"),
-            std::string::npos);
+  EXPECT_NE(
+      no({{"verb", "coefficients"}, {"input", "a/slots.toml"}, {"output", "a/slots.toml"}}).find("is read by this job"),
+      std::string::npos);
   EXPECT_NE(no({{"verb", "couple"},
                 {"input", "assembly.toml"},
                 {"output", "tip.uff"},
                 {"options", {{"holder_out", "assembly.toml"}}}})
-                .find("it is not overwritten"),
+                .find("is read by this job"),
             std::string::npos);
   EXPECT_NE(no({{"verb", "joint"},
                 {"input", "assembly.toml"},
                 {"output", "tip.json"},
                 {"options", {{"measured", {"tip.json"}}}}})
-                .find("it is not overwritten"),
+                .find("is read by this job"),
             std::string::npos);
 }
 
@@ -293,12 +294,12 @@ TEST_F(JobVerbs, NothingThatADocumentNamesIsOverwritten) {
   const auto lobes_to = [](const char* output) {
     return Json{{"verb", "lobes"}, {"input", "a/lobes.toml"}, {"output", output}};
   };
-  EXPECT_NE(no(lobes_to("a/modes.json")).find("a/modes.json is read by this job"), std::string::npos);
+  EXPECT_NE(no(lobes_to("a/modes.json")).find("a/modes.json: is read by this job"), std::string::npos);
   EXPECT_NE(no(lobes_to("a/alias.json")).find("is read by this job"), std::string::npos);
   EXPECT_EQ(read(lobes_to("a/lobes.json")).output, "a/lobes.json");
   EXPECT_EQ(read(lobes_to("modes.json")).output, "modes.json");
   // A folder gets files of many names.
-  EXPECT_NE(no({{"verb", "plan"}, {"input", "job.toml"}, {"output", "a"}}).find("Give a folder of its own"),
+  EXPECT_NE(no({{"verb", "plan"}, {"input", "job.toml"}, {"output", "a"}}).find("stands in the folder that it writes"),
             std::string::npos);
   EXPECT_EQ(read({{"verb", "plan"}, {"input", "job.toml"}, {"output", "out"}}).output, "out");
   EXPECT_EQ(read({{"verb", "lobes"}, {"input", "a/self.toml"}, {"output", "a/b.json"}}).output, "a/b.json");
@@ -310,7 +311,7 @@ TEST_F(JobVerbs, NothingThatADocumentNamesIsOverwritten) {
   EXPECT_NE(no(twice), "");
   Json same = twice;
   same["options"]["holder_out"] = "tip.uff";
-  EXPECT_NE(no(same).find("tip.uff is written twice"), std::string::npos);
+  EXPECT_NE(no(same).find("is where two outputs would be written"), std::string::npos);
 }
 
 TEST_F(JobVerbs, AreListedForThePage) {

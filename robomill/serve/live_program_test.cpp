@@ -12,6 +12,7 @@
 
 #include "robomill/io/file.hpp"
 #include "robomill/serve/job_runner.hpp"
+#include "robomill/serve/job_verbs.hpp"
 #include "robomill/serve/serve.hpp"
 #include "testing/jobs/program_files.hpp"
 #include "testing/serve/http_client.hpp"
@@ -43,6 +44,11 @@ class LiveProgram : public ::testing::Test {
   test::Folder place_;
 };
 
+/// What the job finds.
+std::shared_ptr<const jobs::PlanResult> plan_of(const std::filesystem::path& folder) {
+  return run_verb({.inputs = {"job.toml"}}, folder, Progress::none()).plan;
+}
+
 /// Runs a job to its end.
 int run(JobRunner& jobs, const std::string& input) {
   const int id = jobs.submit({.inputs = {input}}).value();
@@ -58,12 +64,10 @@ int run(JobRunner& jobs, const std::string& input) {
 }
 
 TEST_F(LiveProgram, AnswersAsThePlanDoes) {
-  JobRunner jobs(place_.path(), [](const std::string&) {});
-  const int id = run(jobs, "job.toml");
-  const auto plan = jobs.plan(id);
+  const auto plan = plan_of(place_.path());
   ASSERT_NE(plan, nullptr);
-  const LiveProgramRequest asked = read_live_program_request(
-      fmt::format(R"({{"job": {}, "gamma": [[0, 0]], "client": "c", "channel": "program", "sequence": 7}})", id));
+  const LiveProgramRequest asked =
+      read_live_program_request(R"({"job": 1, "gamma": [[0, 0]], "client": "c", "channel": "program", "sequence": 7})");
   const json answer = json::parse(live_program(asked, *plan));
   EXPECT_EQ(answer["sequence"], 7);
   const json blocks = json::parse(jobs::blocks_json(*plan->forces, *plan->blocks));
@@ -86,17 +90,18 @@ TEST_F(LiveProgram, AnswersAsThePlanDoes) {
 }
 
 TEST_F(LiveProgram, KeepsTheLastPlansOfPrograms) {
-  JobRunner jobs(place_.path(), [](const std::string&) {});
+  JobRunner jobs(
+      place_.path(), [](const std::string&) {}, run_here(place_.path()));
   const int first = run(jobs, "job.toml");
   const int second = run(jobs, "job.toml");
   const int other = run(jobs, "no-program.toml");
-  EXPECT_NE(jobs.plan(first), nullptr);
-  EXPECT_EQ(jobs.plan(other), nullptr);
+  EXPECT_TRUE(jobs.turn(first));
+  EXPECT_FALSE(jobs.turn(other));
   const int third = run(jobs, "job.toml");
-  EXPECT_EQ(jobs.plan(first), nullptr);
-  EXPECT_NE(jobs.plan(second), nullptr);
-  EXPECT_NE(jobs.plan(third), nullptr);
-  EXPECT_EQ(jobs.plan(99), nullptr);
+  EXPECT_FALSE(jobs.turn(first));
+  EXPECT_TRUE(jobs.turn(second));
+  EXPECT_TRUE(jobs.turn(third));
+  EXPECT_FALSE(jobs.turn(99));
 }
 
 TEST_F(LiveProgram, IsAskedOverHttp) {
@@ -135,8 +140,7 @@ TEST_F(LiveProgram, IsAskedOverHttp) {
 }
 
 TEST_F(LiveProgram, EndsWhenItIsSuperseded) {
-  JobRunner jobs(place_.path(), [](const std::string&) {});
-  const auto plan = jobs.plan(run(jobs, "job.toml"));
+  const auto plan = plan_of(place_.path());
   ASSERT_NE(plan, nullptr);
   const std::atomic<bool> stop = true;
   Progress stopped({}, &stop);

@@ -72,6 +72,8 @@ void MonitorSession::stop() {
     stop_ = true;
   }
   thread_.request_stop();
+  const std::lock_guard lock(mutex_);
+  if (session_ != nullptr) session_->queue().close();
 }
 
 void MonitorSession::send(std::string_view event, const std::string& data) {
@@ -126,8 +128,8 @@ void MonitorSession::receive(const std::stop_token& stop) {
   }
   const live::Advisor advisor(std::move(basis));
   live::Session session(file, {.live = is_stream_}, outputs(advisor));
-  show_counts(&session.metrics());
-  const AtEnd hide{[this] { show_counts(nullptr); }};
+  show(&session);
+  const AtEnd hide{[this] { show(nullptr); }};
   std::shared_ptr<void> connection;
   std::optional<live::SourceInput> reader;
   if (is_stream_) {
@@ -153,10 +155,10 @@ void MonitorSession::receive(const std::stop_token& stop) {
   publish_rest();
 }
 
-void MonitorSession::show_counts(const live::MetricValues* metrics) {
+void MonitorSession::show(live::Session* session) {
   const std::lock_guard lock(mutex_);
-  if (metrics_ != nullptr) counts_ = counts_of(*metrics_);
-  metrics_ = metrics;
+  if (session_ != nullptr) counts_ = counts_of(session_->metrics());
+  session_ = session;
 }
 
 live::SessionOutputs MonitorSession::outputs(const live::Advisor& advisor) {
@@ -173,8 +175,9 @@ live::SessionOutputs MonitorSession::outputs(const live::Advisor& advisor) {
     spectrum_.add(samples);
     publish_due();
   };
-  out.skipped = [this](std::uint64_t) { spectrum_.restart(); };
+  out.skipped = [this](std::uint64_t, monitor::BlindReason) { spectrum_.restart(); };
   out.idle = [this] { publish_due(); };
+  out.overloaded = [this](const monitor::MonitorEvent& event, const std::string&) { take_overload(event); };
   return out;
 }
 
@@ -225,6 +228,28 @@ void MonitorSession::take(const monitor::MonitorEvent& event) {
   const std::string message = client_text(event.message, options_.root);
   const std::lock_guard lock(mutex_);
   history_.add(event, message, clock_s());
+}
+
+/// Of another thread: the session's hangs.
+void MonitorSession::take_overload(const monitor::MonitorEvent& event) {
+  try {
+    MonitorFrame frame;
+    frame.clock_s = clock_s();
+    frame.time_s = event.time_s;
+    frame.state = event.decision.state;
+    frame.reason = event.decision.reason;
+    Json message = {{"id", options_.id}, {"frame", frame_json(frame)}};
+    {
+      const std::lock_guard lock(mutex_);
+      frames_.add(frame);
+      history_.add(event, {}, frame.clock_s);
+      message["alarms"] = history_.take_changed();
+      message.update(counts());
+    }
+    send("monitor", io::plain_text(message));
+  } catch (const std::exception&) {
+    // No memory for a message, say: the state is in what the next one tells.
+  }
 }
 
 /// Of the last seconds: seconds of the stream a second of the clock.
@@ -285,7 +310,7 @@ void MonitorSession::set_status(Status status, Json error) {
 
 /// The mutex is held.
 Json MonitorSession::counts() const {
-  return metrics_ != nullptr ? counts_of(*metrics_) : counts_;
+  return session_ != nullptr ? counts_of(session_->metrics()) : counts_;
 }
 
 Json MonitorSession::summary() const {

@@ -46,7 +46,7 @@ class MonitorSession {
   MonitorSession(const MonitorSession&) = delete;
   MonitorSession& operator=(const MonitorSession&) = delete;
 
-  /// Asks it to end; does not wait. From then on nothing is published.
+  /// Asks it to end, and lets its input go; does not wait. From then on nothing is published.
   void stop();
   /// Whether it has ended: the recording is over, or something failed.
   [[nodiscard]] bool over() const;
@@ -65,8 +65,9 @@ class MonitorSession {
   [[nodiscard]] live::SessionOutputs outputs(const live::Advisor& advisor);
   void decide(const monitor::Decision& decision, double time_s, double compute_s);
   void take(const monitor::MonitorEvent& event);
+  void take_overload(const monitor::MonitorEvent& event);
   void put(const MonitorFrame& frame);
-  void show_counts(const live::MetricValues* metrics);
+  void show(live::Session* session);
   [[nodiscard]] io::Json counts() const;
   void publish_due(bool last = false);
   void publish_rest();
@@ -94,8 +95,8 @@ class MonitorSession {
   mutable std::mutex mutex_;  ///< of the rest
   Status status_ = Status::starting;
   io::Json error_ = nullptr;
-  const live::MetricValues* metrics_ = nullptr;  ///< while there is a session …
-  io::Json counts_;                              ///< … and what they were at its end
+  live::Session* session_ = nullptr;  ///< while there is one …
+  io::Json counts_;                   ///< … and what its counts were at its end
   double ended_s_ = NAN;
   int teeth_ = 0;
   std::vector<Assumption> assumed_ = {};

@@ -16,8 +16,9 @@ constexpr double fastest = 50.0;
 
 }  // namespace
 
-MonitorSessions::MonitorSessions(const Folder& folder, OpenStream open_stream, MonitorSession::Publish publish)
-    : folder_(folder), open_stream_(std::move(open_stream)), publish_(std::move(publish)) {}
+MonitorSessions::MonitorSessions(const Folder& folder, OpenStream open_stream, MonitorSession::Publish publish,
+                                 int last)
+    : folder_(folder), open_stream_(std::move(open_stream)), publish_(std::move(publish)), last_(last) {}
 
 MonitorSessions::~MonitorSessions() {
   for (const auto& [id, session] : sessions_) session->stop();

@@ -19,7 +19,8 @@ class MonitorSessions {
   static constexpr std::size_t most = 8;
   /// @param open_stream  none: there are no streams
   /// @param publish      MonitorSession's
-  MonitorSessions(const Folder& folder, OpenStream open_stream, MonitorSession::Publish publish);
+  /// @param last         number of the last session before the first one
+  MonitorSessions(const Folder& folder, OpenStream open_stream, MonitorSession::Publish publish, int last = 0);
   /// Ends all.
   ~MonitorSessions();
   MonitorSessions(const MonitorSessions&) = delete;
@@ -38,7 +39,7 @@ class MonitorSessions {
   OpenStream open_stream_;
   MonitorSession::Publish publish_;
   std::map<int, std::shared_ptr<MonitorSession>> sessions_;
-  int last_ = 0;
+  int last_;
   Worker endings_{most};  ///< a broker may take seconds to let a session go, and nobody is to wait for that
 };
 

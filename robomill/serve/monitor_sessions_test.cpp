@@ -21,6 +21,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "robomill/live/hop_queue.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/paced_source.hpp"
 #include "testing/serve/http_client.hpp"
@@ -348,6 +349,35 @@ TEST_F(MonitorSessionsTest, WaitsForNoneThatEnds) {
   open();
   EXPECT_EQ(published("monitors").size(), messages);
   EXPECT_FALSE(late);
+}
+
+// A stream that says of its spindle that it hardly turns, as fast as it is taken: ended within a hop.
+TEST_F(MonitorSessionsTest, EndsAtOnceWhateverTheSpeed) {
+  std::atomic<bool> let_go{false};
+  open([&](const monitor::MonitorFile&, const StreamSink& sink, const std::atomic<bool>&) {
+    auto sender = std::make_shared<std::jthread>([queue = &sink.queue, samples = cut(1.0, 9.0, 9.0)] {
+      for (std::size_t at = 0;; at = (at + 256) % (samples.size() - 256)) {
+        live::Hop hop{.samples = std::vector<float>(samples.begin() + static_cast<std::ptrdiff_t>(at),
+                                                    samples.begin() + static_cast<std::ptrdiff_t>(at + 256)),
+                      .spindle_speed_rad_per_s = 0.05 * units::rpm};
+        if (!queue->push(std::move(hop))) return;
+      }
+    });
+    return std::shared_ptr<void>(sender.get(), [sender, &let_go](void*) mutable {
+      sender.reset();
+      let_go = true;
+    });
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const int id = start("mqtt://127.0.0.1/spindle");
+  const json all = wait_for(id, [](const json& now) { return now["decision_count"] > 200; });
+  EXPECT_EQ(all["frame"]["state"], "blind");
+  EXPECT_EQ(all["frame"]["reason"], "standstill");
+  const auto asked = std::chrono::steady_clock::now();
+  EXPECT_LT(asked - begin, std::chrono::seconds(30));
+  ask("DELETE", "/api/monitors/" + std::to_string(id));
+  EXPECT_TRUE(wait_until([&] { return let_go.load(); }));
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(2));
 }
 
 TEST_F(MonitorSessionsTest, FilesThatMonitorTomlNamesAreReadOnItsThread) {

@@ -17,6 +17,7 @@ PacedSource::PacedSource(std::unique_ptr<io::SampleSource> source, std::size_t c
     : source_(std::move(source)), channels_(channels), frames_per_s_(frames_per_s), stop_(std::move(stop)) {
   sample_rate_hz_ = source_->sample_rate_hz();
   full_scale_ = source_->full_scale();
+  notes_ = source_->notes();
 }
 
 bool PacedSource::wait() {

@@ -6,16 +6,19 @@
 #include <cctype>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
+#include "robomill/io/sandbox.hpp"
 #include "robomill/page/app_page.hpp"
 #include "robomill/serve/api.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/guard.hpp"
+#include "robomill/serve/process/worker_process.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -46,6 +49,12 @@ std::optional<HttpResponse> page_file(const std::string& path) {
   return std::nullopt;
 }
 
+WorkerOptions worker_of(const ServeOptions& options, const Folder& folder) {
+  return {.command = options.worker,
+          .root = folder.root(),
+          .memory_bytes = options.memory_bytes > 0 ? options.memory_bytes : io::machine_memory_bytes() / 2};
+}
+
 }  // namespace
 
 void ServeOptions::validate() const {
@@ -56,7 +65,7 @@ void ServeOptions::validate() const {
   if (!token.empty() && (token.size() < least_token || !plain)) {
     throw InvalidInput("token", fmt::format("must be {} or more letters, digits, - or _", least_token));
   }
-  if (!is_loopback(host) && token.empty()) {
+  if (!is_loopback(host_address(host)) && token.empty()) {
     throw InvalidInput("host", fmt::format("{} can be reached from other machines and needs a token", host),
                        "Give --token TEXT, or leave --host out");
   }
@@ -66,7 +75,7 @@ struct Server::Parts {
   explicit Parts(const ServeOptions& options)
       : folder(options.folder),
         confinement(folder.root()),
-        host(options.host),
+        host(host_address(options.host)),
         token(options.token),
         guard(host, token) {}
   /// Also where the constructor of Server fails: jobs and streams of api publish until they are gone.
@@ -118,19 +127,29 @@ Server::Server(const ServeOptions& options) {
   parts_ = std::make_unique<Parts>(options);
   Parts& parts = *parts_;
   parts.http = std::make_unique<HttpServer>(
-      HttpServer::Options{.host = options.host, .port = options.port, .headers = safe_headers});
+      HttpServer::Options{.host = parts.host, .port = options.port, .headers = safe_headers});
   parts.guard.set_port(parts.http->port());
   parts.page = page::app_html(parts.folder.root().filename().string(), parts.guard.write_token());
   parts.outlet = parts.http.get();
   parts.api =
-      std::make_unique<Api>(parts.folder, options.open_stream,
+      std::make_unique<Api>(parts.folder, options.open_stream, worker_of(options, parts.folder),
                             [&parts](std::string_view event, std::string_view data) { parts.publish(event, data); });
   parts.http->start(
       {.admit = [&parts](const HttpRequest& request) { return parts.admit(request); },
-       .handle = [&parts](HttpRequest request, const Reply& reply) { parts.handle(std::move(request), reply); }});
+       .handle = [&parts](HttpRequest request, const Reply& reply) { parts.handle(std::move(request), reply); },
+       .knows = [&parts](const HttpRequest& request) { return parts.guard.knows(request); }});
 }
 
 Server::~Server() = default;
+
+bool restrict_to_folder(const std::filesystem::path& folder) {
+  const Folder served(folder);
+  // Names of hosts and certificates of brokers, libraries that are loaded late, what libraries ask of the machine.
+  return io::restrict_files({.readable = {"/etc", "/usr", "/lib", "/lib64", "/run/systemd/resolve", "/run/resolvconf",
+                                          "/proc", "/sys/devices/system", "/sys/fs/cgroup", "/dev/urandom"},
+                             .writable = {served.root(), "/dev/null"},
+                             .programs = io::loaded_files()});
+}
 
 int Server::port() const {
   return parts_->http->port();

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -38,11 +39,15 @@ using OpenStream = std::function<std::shared_ptr<void>(const monitor::MonitorFil
 
 struct ROBOMILL_API ServeOptions {
   std::filesystem::path folder = ".";  ///< nothing outside it is read or written
-  std::string host = "127.0.0.1";      ///< an address; another than loopback needs a token
+  std::string host = "127.0.0.1";      ///< an address, or localhost; another than loopback needs a token
   int port = 8437;                     ///< 0: any that is free
   /// Of at least 16 letters, digits, - or _: who asks has to know it. Empty: anybody on this machine may ask.
   std::string token = {};
   OpenStream open_stream = {};  ///< the library itself knows no broker; none: recordings alone
+  /// A program that calls work_for_server(), and its arguments: jobs, live lobes, files that are looked at and spindles
+  /// that are monitored run in processes of it, so that the server survives them. Empty: in this process.
+  std::vector<std::string> worker = {};
+  std::uint64_t memory_bytes = 0;  ///< that each such process may have; 0: half of the machine's
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -68,5 +73,18 @@ class ROBOMILL_API Server {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// What ServeOptions::worker does: answers the server that started it, until the server ends. It opens nothing outside
+/// the folder that is served but libraries, and no connection, where the kernel can see to that; one that monitors
+/// spindles also the system's settings, and connections.
+/// @param open_stream  ServeOptions', for spindles that are monitored
+/// @return the program's exit code; 2 where no server started it
+[[nodiscard]] ROBOMILL_API int work_for_server(OpenStream open_stream = {});
+
+/// For a program that does nothing but serve, before it has a second thread: from here on it opens no file outside the
+/// folder but those that belong to the system and to itself, whatever it is made to do, nor does what it starts.
+/// False where the kernel has no Landlock: then the Server's own checks remain.
+/// @throws InvalidInput if there is no such folder
+ROBOMILL_API bool restrict_to_folder(const std::filesystem::path& folder);
 
 }  // namespace robomill::serve

@@ -158,6 +158,33 @@ TEST_F(Serve, ChecksAndEditsTexts) {
   EXPECT_EQ(ask("GET", "/api/file?path=lobes.toml").body, lobes);
 }
 
+TEST_F(Serve, SaysThatItsFolderIsGone) {
+  fs::remove_all(place_.at("served"));
+  const HttpAnswer state = ask("GET", "/api/state");
+  EXPECT_EQ(state.status, 400);
+  EXPECT_NE(state.body.find("the folder that is served is gone"), std::string::npos) << state.body;
+  // Nothing is made in its place.
+  EXPECT_EQ(ask("PUT", "/api/file?path=new.csv", "1,2", {{"If-None-Match", "*"}}).status, 400);
+  post("/api/jobs", {{"input", "job.toml"}, {"output", "out"}}, 400);
+  for (const char* path : {"/api/check", "/api/inspect", "/api/lobes", "/api/tap", "/api/tap/save", "/api/monitors"}) {
+    const HttpAnswer answer = ask("POST", path, "{}");
+    EXPECT_EQ(answer.status, 400) << path;
+    EXPECT_NE(answer.body.find("the folder that is served is gone"), std::string::npos) << path << answer.body;
+  }
+  EXPECT_NE(ask("GET", "/api/file?path=job.toml").body.find("is gone"), std::string::npos);
+  EXPECT_EQ(ask("GET", "/api/jobs").status, 200);
+  EXPECT_FALSE(fs::exists(place_.at("served")));
+}
+
+TEST_F(Serve, SaysNoAbsolutePaths) {
+  const json job = wait_for_end(post("/api/jobs", {{"verb", "plan"}, {"input", "job.toml"}, {"output", "out"}})["id"]);
+  ASSERT_EQ(job["state"], "done") << job;
+  const std::string folder = fs::canonical(place_.path()).string();
+  EXPECT_EQ(job.dump().find(folder), std::string::npos) << job;
+  EXPECT_NE(job["summary"].get<std::string>().find('\n'), std::string::npos) << job;
+  EXPECT_EQ(ask("GET", "/api/jobs/" + job["id"].dump() + "/report").body.find(folder + "/"), std::string::npos);
+}
+
 TEST_F(Serve, ReadsNothingOutside) {
   for (const char* path : {"../outside.toml", "%2e%2e%2foutside.toml", "/etc/passwd", "a/../../outside.toml"}) {
     const HttpAnswer answer = ask("GET", std::string("/api/file?path=") + path);
@@ -326,6 +353,13 @@ TEST(ServeTest, SaysThatAPortIsTaken) {
   const Server server({.folder = place.path(), .port = 0});  // the bounds are free again
 }
 
+TEST(ServeTest, LocalhostIsThisMachine) {
+  const test::Folder place;
+  const Server server({.folder = place.path(), .host = "localhost", .port = 0});
+  EXPECT_EQ(server.address(), "http://127.0.0.1:" + std::to_string(server.port()) + "/");
+  EXPECT_EQ(test::http_ask(server.port(), "GET", "/").status, 200);
+}
+
 TEST(ServeOptionsTest, OtherMachinesNeedAToken) {
   const test::Folder place;
   EXPECT_NE(rejection([&] {
@@ -339,9 +373,14 @@ TEST(ServeOptionsTest, OtherMachinesNeedAToken) {
             std::string::npos);
   EXPECT_NE(
       rejection([&] {
-        const Server server({.folder = place.path(), .host = "localhost", .port = 0, .token = "abcdefghijklmnop"});
-      }).find("must be an address"),
+        const Server server({.folder = place.path(), .host = "mill.local", .port = 0, .token = "abcdefghijklmnop"});
+      }).find("host = mill.local; must be an address of this machine, as 127.0.0.1, or localhost"),
       std::string::npos);
+  {
+    const Server here({.folder = place.path(), .host = "localhost", .port = 0});
+    EXPECT_EQ(here.address(), "http://127.0.0.1:" + std::to_string(here.port()) + "/");
+    EXPECT_EQ(test::http_ask(here.port(), "GET", "/").status, 200);
+  }
   const Server server({.folder = place.path(), .port = 0, .token = "abcdefghijklmnop"});
   EXPECT_EQ(test::http_ask(server.port(), "GET", "/").status, 401);
   const HttpAnswer first = test::http_ask(server.port(), "GET", "/?token=abcdefghijklmnop");

@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/simulation/job.hpp"
 
 namespace robomill::simulation {
@@ -66,7 +67,7 @@ void DrillingCut::validate() const {
   require_non_negative("runout_m", runout_m, "m");
   if (runout_m > 0.5 * diameter_m) throw InvalidInput("runout_m", runout_m, "m", "must be at most the drill's radius");
   coefficients.validate();
-  require_turning(spindle_speed_rad_per_s);
+  cutting::require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   schedule.validate();
   require_damped(structure);
 }

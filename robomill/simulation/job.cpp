@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/simulation/engine.hpp"
@@ -238,6 +239,70 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   }
 }
 
+/// ---------------------------------------------------------------- what it takes
+
+/// A step of time in operations, by README.md's "Cost".
+double operations_of_step(const Job& job, std::size_t elements) {
+  return 100.0 + 12.0 * static_cast<double>(job.structure.pole.size()) + 30.0 * static_cast<double>(elements);
+}
+
+/// The first multipliers, at two resolutions; they need a few blocks of columns.
+double operations_of_small_vibration(const Job& job, std::size_t elements) {
+  constexpr double resolutions = 1.0 + 2.0, blocks = 4.0;
+  const double columns = std::min(2.0 * static_cast<double>(job.structure.pole.size()) + 10.0, 60.0);
+  const double steps = job.period.repeats ? job.period.steps(job.first.steps_per_revolution) : 0.0;
+  return resolutions * blocks * columns * steps * operations_of_step(job, elements);
+}
+
+/// What decides how fine the steps are, or how many there are.
+CostDriver dominant_driver(const Job& job, const SimulationOptions& options) {
+  constexpr double usual_s = 2.0, usual_rate_hz = 10240.0, usual_hz = 1000.0, usual_rad_per_s = 400.0,
+                   usual_steps = 2000.0;
+  double fastest = 0.0;
+  for (const std::complex<double>& pole : job.structure.pole) fastest = std::max(fastest, std::abs(pole));
+  const double steps_per_revolution = options.steps_per_revolution;
+  return dominant_of(
+      {{.field = "seconds", .value = options.seconds, .unit = "s", .times_usual = options.seconds / usual_s},
+       {.field = "sample_rate_hz",
+        .value = options.sample_rate_hz,
+        .unit = "Hz",
+        .times_usual = options.sample_rate_hz / usual_rate_hz},
+       {.field = "frequency_hz",
+        .value = fastest / (2.0 * pi),
+        .unit = "Hz",
+        .times_usual = fastest / (2.0 * pi) / usual_hz},
+       {.field = "steps_per_revolution",
+        .value = steps_per_revolution,
+        .times_usual = steps_per_revolution / usual_steps},
+       {.field = "spindle_speed_rad_per_s",
+        .value = job.spindle_speed_rad_per_s,
+        .unit = "rad/s",
+        .times_usual = usual_rad_per_s / job.spindle_speed_rad_per_s}});
+}
+
+/// @param run  the motion over all the time too, else its small vibration alone
+Cost cost_of(const Job& job, const SimulationOptions& options, bool run) {
+  const CutModel model = job.model_at(job.first);
+  const double steps_per_revolution = job.first.steps_per_revolution;
+  const std::size_t elements = model.elements.size();
+  // A node of a ring's surface, its sine and cosine.
+  constexpr double bytes_of_node = 40.0;
+  Cost cost = {.operations = operations_of_small_vibration(job, elements),
+               .bytes = 2.0 * steps_per_revolution * bytes_of_node * static_cast<double>(model.rings.size()),
+               .dominant = dominant_driver(job, options)};
+  if (!run) return cost;
+  // Steps are doubled once in most cuts. A sample has nine numbers, here and in the result, and its line of a file; a
+  // period leaves its looks, a tooth its pass of a wall.
+  constexpr double doubled_steps = 2.0, bytes_of_sample = 260.0, bytes_of_pass = 40.0;
+  const double revolutions = options.seconds * job.spindle_speed_rad_per_s / (2.0 * pi);
+  const double periods = revolutions * job.period.parts / job.period.revolutions;
+  cost.operations += doubled_steps * revolutions * steps_per_revolution * operations_of_step(job, elements);
+  cost.bytes += options.seconds * options.sample_rate_hz * bytes_of_sample +
+                periods * static_cast<double>(phases * model.dimensions) * sizeof(double) +
+                0.5 * revolutions * static_cast<double>(elements * job.walls.size()) * bytes_of_pass;
+  return cost;
+}
+
 }  // namespace
 
 SmallVibration small_vibration(const Job& job, const SimulationOptions& options, Progress& progress) {
@@ -245,6 +310,7 @@ SmallVibration small_vibration(const Job& job, const SimulationOptions& options,
   if (job.structure.pole.size() == 0) return small;
   small.status = SmallVibration::Status::not_periodic;
   if (!job.period.repeats) return small;
+  require_affordable(cost_of(job, options, false));
   small.period_s = 2.0 * pi / job.spindle_speed_rad_per_s * job.period.revolutions / job.period.parts;
   std::array<Multiplier, 2> found;
   Resolution resolution = job.first;
@@ -266,6 +332,7 @@ SmallVibration small_vibration(const Job& job, const SimulationOptions& options,
 
 Simulation simulate(const Job& job, const SimulationOptions& options, Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
+  require_affordable(cost_of(job, options, true));
   Simulation out;
   out.sample_rate_hz = options.sample_rate_hz;
   out.small = small_vibration(job, options, progress);
@@ -277,14 +344,6 @@ Simulation simulate(const Job& job, const SimulationOptions& options, Progress& 
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return out;
-}
-
-void require_turning(double spindle_speed_rad_per_s) {
-  require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
-  if (spindle_speed_rad_per_s > 1e5) {
-    throw InvalidInput("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "is faster than any spindle",
-                       "Are the units mixed up?");
-  }
 }
 
 void require_damped(const modal::TipModes& structure) {

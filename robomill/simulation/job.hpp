@@ -24,8 +24,6 @@ struct Job {
 [[nodiscard]] SmallVibration small_vibration(const Job& job, const SimulationOptions& options, Progress& progress);
 [[nodiscard]] Simulation simulate(const Job& job, const SimulationOptions& options, Progress& progress);
 
-/// @throws InvalidInput
-void require_turning(double spindle_speed_rad_per_s);
 /// Shapes that fit, finite numbers, and poles that die out. @throws InvalidInput
 void require_damped(const modal::TipModes& structure);
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/simulation/job.hpp"
 #include "robomill/simulation/posture_model.hpp"
 
@@ -76,7 +77,7 @@ void PostureCut::validate() const {
   cutter.validate();
   require_valid(engagement);
   motion.validate();
-  require_turning(motion.spindle_speed_rad_per_s);
+  cutting::require_spindle_speed("motion.spindle_speed_rad_per_s", motion.spindle_speed_rad_per_s);
   if (cutter.mill.runout_m > 0.0) {
     require_positive("motion.feed_per_tooth_m", motion.feed_per_tooth_m, "m",
                      "Where there is runout it decides which teeth miss the cut");

@@ -268,7 +268,7 @@ TEST(Posture, RejectsBadInput) {
   EXPECT_EQ(rejected([](C& c) { c.engagement.feed_from_tool *= 2.0; }), "engagement.feed_from_tool");
   EXPECT_EQ(rejected([](C& c) { c.engagement.feed_from_tool.row(0) *= -1.0; }), "engagement.feed_from_tool");
   EXPECT_EQ(rejected([](C& c) { c.motion.feed_per_tooth_m = 0.0; }), "motion.feed_per_tooth_m");
-  EXPECT_EQ(rejected([](C& c) { c.motion.spindle_speed_rad_per_s = 0.0; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](C& c) { c.motion.spindle_speed_rad_per_s = 0.0; }), "motion.spindle_speed_rad_per_s");
   EXPECT_EQ(rejected([](C& c) { c.coefficients.tangential_n_per_m2.clear(); }), "tangential_n_per_m2");
   EXPECT_EQ(rejected([](C& c) { c.structure.compliance(2, 2) = std::nan(""); }), "structure");
 }

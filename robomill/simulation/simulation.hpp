@@ -27,7 +27,7 @@ struct ROBOMILL_API MillingCut {
 };
 
 struct ROBOMILL_API SimulationOptions {
-  double seconds = 2.0;             ///< how much is simulated [s], > 0
+  double seconds = 2.0;             ///< how much is simulated [s], > 0, at most 1e7
   double sample_rate_hz = 10240.0;  ///< of the output [Hz], > 0
   bool loss_of_contact = true;      ///< false: the linear cut, whose chip may have negative thickness
   /// false: chips as a rigid cutter would cut them, whatever vibrates: the forced vibration, which cannot chatter.

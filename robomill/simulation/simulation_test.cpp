@@ -279,6 +279,16 @@ TEST(Simulation, RejectsBadInput) {
   EXPECT_EQ(rejected([](C& c, O&) { c.milling.feed_per_tooth_m = 0.0; }), "feed_per_tooth_m");
 }
 
+TEST(Simulation, IsRejectedBeforeItRunsWhereItWouldTakeTooMuch) {
+  const std::string long_one =
+      test::rejection([] { static_cast<void>(simulate(benchmark_cut(0.1, 5000.0, 1e-3), {.seconds = 3600.0})); });
+  EXPECT_TRUE(long_one.starts_with("seconds = 3600 s; would take about 9.")) << long_one;
+  EXPECT_NE(long_one.find("GB of memory, more than 2 GB"), std::string::npos) << long_one;
+  MillingCut quick = benchmark_cut(0.1, 5000.0, 1e-3);
+  quick.structure.pole(0) = {-1e4, 6e6};
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(simulate(quick, {.seconds = 200.0})); }), "frequency_hz");
+}
+
 TEST(Simulation, StopsWhenAsked) {
   std::atomic<bool> stop = true;
   Progress progress({}, &stop);

@@ -1,18 +1,22 @@
 #include "robomill/stability/block.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/edges.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
 #include "robomill/stability/chart/lowest_crossing.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/collocation/mode_sensitivity.hpp"
 #include "robomill/stability/collocation/regime_of.hpp"
+#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/sensitivity.hpp"
 
 namespace robomill::stability {
@@ -195,8 +199,9 @@ BlockStability block_stability(const LobesProblem& problem, double spindle_speed
   problem.validate();
   options.validate();
   require_known(problem, Method::collocation);
-  require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  cutting::require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   require_positive("axial_depth_m", axial_depth_m, "m");
+  require_affordable(cost_of_looks(problem, {}, std::array{spindle_speed_rad_per_s}, {.a_speed = 2.0 * looks_a_limit}));
   return BlockSearch(problem, {spindle_speed_rad_per_s, axial_depth_m}, options).run();
 }
 

@@ -10,6 +10,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/chip.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/steady_vibration.hpp"
 #include "robomill/stability/surface_error_spatial.hpp"
 
@@ -135,7 +136,7 @@ ForcedResponse::ForcedResponse(const LobesProblem& problem) : milling_(problem.m
 
 ForcedVibration ForcedResponse::at(const OperatingPoint& point) const {
   require_positive("axial_depth_m", point.axial_depth_m, "m");
-  require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+  cutting::require_spindle_speed("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s);
   if (spatial_) {
     constexpr double tolerance = 1e-4;  // of the spectral radius: the steady motion needs no finer mesh
     const detail::SpatialSurface& surface = spatial_->surface;

@@ -1,6 +1,7 @@
 #include "robomill/stability/lobes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -9,10 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
 #include "robomill/stability/frequency_domain/frequency_lobes.hpp"
+#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability {
@@ -70,6 +75,26 @@ long long add_chart(Scheme& scheme, const LobesOptions& options, LobesResult& re
   return grid.uncertain;
 }
 
+/// Of the chart, and of its points with their limits: the threads that it may use.
+int require_affordable_chart(const LobesProblem& problem, const LobesOptions& options) {
+  constexpr double usual_nodes = 40'000.0;
+  const double depths = options.grid[1], nodes = options.grid[0] * depths;
+  const double larger = std::max(options.grid[0], options.grid[1]);
+  const bool map = options.output == Output::map || options.output == Output::both;
+  // A map in memory, and as numbers of a document. Of a boundary each node is known or not.
+  Looks looks = {.a_speed = looks_a_limit,
+                 .bytes = map ? 60.0 * nodes : 0.0,
+                 .counted = {.field = "grid", .value = larger, .times_usual = nodes / usual_nodes}};
+  if (map) looks.a_speed = looks_a_node * depths;
+  if (options.output == Output::boundary && !in_frequency_domain(options.method)) {
+    looks.a_speed = 10.0 + 0.5 * depths + 80.0 / options.grid[0];
+    looks.bytes = 9.0 * nodes;
+  }
+  Cost cost = cost_of_looks(problem, options, even(options.spindle_speed_rad_per_s, options.grid[0]), looks);
+  add_cost_of_points(problem, options, cost);
+  return require_affordable(cost);
+}
+
 }  // namespace
 
 LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& options, Progress& progress) {
@@ -77,6 +102,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   problem.validate();
   options.validate();
   require_known(problem, options.method);
+  const ThreadLimit threads(require_affordable_chart(problem, options));
   if (in_frequency_domain(options.method)) {
     LobesResult result = frequency_lobes(problem, options, progress);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -121,6 +147,7 @@ PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& opti
   checked.axial_depth_m = {0.0, 0.1};
   checked.points = {point};
   checked.validate();
+  require_affordable(cost_of_looks(problem, checked, std::array{point.spindle_speed_rad_per_s}, {.a_speed = 3.0}));
   if (in_frequency_domain(options.method)) return frequency_point(problem, options, point);
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
   return point_result(*scheme->evaluator(), point);
@@ -133,7 +160,15 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
   LobesOptions checked = options;
   checked.spindle_speed_rad_per_s = {1.0, 2.0};
   checked.validate();
-  for (const double speed : spindle_speeds_rad_per_s) require_positive("spindle_speed_rad_per_s", speed, "rad/s");
+  for (const double speed : spindle_speeds_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", speed);
+  constexpr double usual_speeds = 200.0;
+  const auto speeds = static_cast<double>(spindle_speeds_rad_per_s.size());
+  const ThreadLimit threads(require_affordable(cost_of_looks(problem, options, spindle_speeds_rad_per_s,
+                                                             {.a_speed = looks_a_limit,
+                                                              .counted = {.field = "spindle_speeds_rad_per_s",
+                                                                          .value = speeds,
+                                                                          .unit = "speeds",
+                                                                          .times_usual = speeds / usual_speeds}})));
   if (in_frequency_domain(options.method)) {
     return frequency_limits(problem, options, spindle_speeds_rad_per_s, progress);
   }

@@ -2,12 +2,11 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/lobes.hpp"
 
 namespace robomill::stability {
 namespace {
-
-constexpr double most_points = 2.5e7;  ///< of a grid: a map of them takes an hour and 200 MB
 
 void require_range(const char* field, const std::array<double, 2>& range, const char* unit, bool zero_allowed) {
   for (const double end : range) {
@@ -50,16 +49,12 @@ std::string_view to_string(BifurcationType kind) {
 
 void LobesOptions::validate() const {
   require_range("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", false);
+  for (const double end : spindle_speed_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", end);
   require_range("axial_depth_m", axial_depth_m, "m", true);
   require_depth("axial_depth_m", axial_depth_m[1]);
   for (const int count : grid) {
     if (count < 2) throw InvalidInput("grid", count, "", "must have at least 2 points in each direction");
     if (count > 20000) throw InvalidInput("grid", count, "", "must have at most 20000 points in each direction");
-  }
-  const double points_asked = static_cast<double>(grid[0]) * static_cast<double>(grid[1]);
-  if (points_asked > most_points) {
-    throw InvalidInput("grid", points_asked, "points", "must have at most 25 million in all",
-                       "Limits are refined to the tolerance: the grid only says where to look");
   }
   if (intervals < 4) throw InvalidInput("intervals", intervals, "", "must be at least 4", "40 is usual");
   if (intervals > 10000) throw InvalidInput("intervals", intervals, "", "must be at most 10000", "40 is usual");
@@ -71,7 +66,7 @@ void LobesOptions::validate() const {
     throw InvalidInput("limit_step_m", limit_step_m, "m", "must be at least a 20000th of the depths' range");
   }
   for (const OperatingPoint& point : points) {
-    require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s);
     require_non_negative("points.axial_depth_m", point.axial_depth_m, "m");
     require_depth("points.axial_depth_m", point.axial_depth_m);
     require_positive("points.gain", point.gain, "");

@@ -354,7 +354,7 @@ TEST(LobesOptions, RejectsWhatCannotBe) {
   EXPECT_EQ(rejected([](LobesOptions& o) { o.axial_depth_m = {0.0, 1.0}; }), "axial_depth_m");
   EXPECT_EQ(rejected([](LobesOptions& o) { o.axial_depth_m = {-1e-3, 1e-3}; }), "axial_depth_m");
   EXPECT_EQ(rejected([](LobesOptions& o) { o.grid = {1, 20}; }), "grid");
-  EXPECT_EQ(rejected([](LobesOptions& o) { o.grid = {5001, 5000}; }), "grid");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.grid = {20001, 20}; }), "grid");
   EXPECT_EQ(rejected([](LobesOptions& o) { o.intervals = 3; }), "intervals");
   EXPECT_EQ(rejected([](LobesOptions& o) { o.intervals = 1 << 20; }), "intervals");
   EXPECT_EQ(rejected([](LobesOptions& o) { o.tolerance = 0.0; }), "tolerance");

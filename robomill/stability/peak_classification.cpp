@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -203,7 +204,7 @@ void MeasuredPeaks::validate() const {
     require_positive("frequency_hz", f, "Hz");
     if (f > highest_hz) throw InvalidInput("frequency_hz", f, "Hz", "must be at most 1 MHz", "Are the units mixed up?");
   }
-  require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  cutting::require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
   if (teeth > 100) throw InvalidInput("teeth", teeth, "", "must be at most 100");
 }

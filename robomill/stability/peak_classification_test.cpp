@@ -212,7 +212,7 @@ TEST(PeakClassification, RejectsWhatCannotBe) {
   EXPECT_EQ(rejected({{100.0}, 680.0, 0}), "teeth");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.tolerance_hz = 0.0}), "tolerance_hz");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.tolerance_hz = 60.0}), "tolerance_hz");
-  EXPECT_EQ(rejected({{1e6}, 1e-3, 3}), "tolerance_hz");
+  EXPECT_EQ(rejected({{1e6}, 0.2, 3}), "tolerance_hz");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.speed_tolerance = 0.3}), "speed_tolerance");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.clear_odds = 0.5}), "clear_odds");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.most_rotations = -1}), "most_rotations");

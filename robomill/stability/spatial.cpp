@@ -7,6 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 
 namespace robomill::stability {
 
@@ -65,7 +66,7 @@ void SpatialMilling::validate() const {
   } else {
     cut.validate(cutter);
   }
-  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
+  cutting::require_feed_per_tooth("feed_per_tooth_m", feed_per_tooth_m);
   if (cutter.mill.runout_m > 0.0) {
     require_positive("feed_per_tooth_m", feed_per_tooth_m, "m",
                      "Where there is runout it decides which teeth miss the cut");

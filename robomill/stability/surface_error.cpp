@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,14 +10,17 @@
 #include <optional>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/collocation/milling_model.hpp"
 #include "robomill/stability/gauss.hpp"
+#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/surface_error_spatial.hpp"
 
 namespace robomill::stability {
@@ -197,7 +201,8 @@ void check(const LobesProblem& problem, const OperatingPoint& point) {
   problem.validate();
   require_surface(problem);
   require_positive("axial_depth_m", point.axial_depth_m, "m");
-  require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+  cutting::require_spindle_speed("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s);
+  require_affordable(cost_of_looks(problem, {}, std::array{point.spindle_speed_rad_per_s}, {.a_speed = 10.0}));
 }
 
 void require_space(const LobesProblem& problem, const OperatingPoint& point) {
@@ -266,6 +271,17 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   std::vector<double> depths = even(options.axial_depth_m, grid[1] + 1);
   depths.erase(depths.begin());
   const Axes axes = {even(options.spindle_speed_rad_per_s, grid[0]), depths};
+  constexpr double usual_nodes = 3600.0, looks_a_surface = 4.0;
+  const double nodes = static_cast<double>(grid[0]) * grid[1];
+  LobesOptions collocated = options;
+  collocated.method = Method::collocation;
+  const ThreadLimit threads(
+      require_affordable(cost_of_looks(problem, collocated, axes.spindle_speed_rad_per_s,
+                                       {.a_speed = looks_a_surface * grid[1],
+                                        .bytes = 120.0 * nodes,
+                                        .counted = {.field = "grid",
+                                                    .value = static_cast<double>(std::max(grid[0], grid[1])),
+                                                    .times_usual = nodes / usual_nodes}})));
   const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
   const Surfaces surfaces(problem);
   Count count;

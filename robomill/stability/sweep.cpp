@@ -1,12 +1,17 @@
 #include "robomill/stability/sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
+#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability {
@@ -34,6 +39,20 @@ std::vector<StableInterval> stable_intervals(const Axes& axes, std::size_t speed
   return intervals;
 }
 
+/// Every node to the tolerance, and each point with its gain margin: the threads that may do it.
+int require_affordable_sweep(const LobesProblem& problem, const SweepOptions& options, const Axes& axes) {
+  constexpr double usual_nodes = 2400.0;
+  const double depths = options.grid[1], nodes = options.grid[0] * depths;
+  const double larger = std::max(options.grid[0], options.grid[1]);
+  const LobesOptions as_chart = {.tolerance = options.tolerance, .points = options.points};
+  Cost cost = cost_of_looks(problem, as_chart, axes.spindle_speed_rad_per_s,
+                            {.a_speed = looks_a_node * depths,
+                             .bytes = 60.0 * nodes,
+                             .counted = {.field = "grid", .value = larger, .times_usual = nodes / usual_nodes}});
+  add_cost_of_points(problem, as_chart, cost);
+  return require_affordable(cost);
+}
+
 }  // namespace
 
 void SweepOptions::validate() const {
@@ -51,11 +70,12 @@ void SweepOptions::validate() const {
     throw InvalidInput("spindle_speed_rad_per_s", spindle_speed_rad_per_s[1], "rad/s", "must end above its start",
                        "Give the lower end first");
   }
+  for (const double end : spindle_speed_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", end);
   for (const int count : grid) {
     if (count < 2 || count > 2000) throw InvalidInput("grid", count, "", "must lie between 2 and 2000");
   }
   for (const OperatingPoint& point : points) {
-    require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s);
     require_finite("points.value", point.axial_depth_m, unit);
     if (!angle) require_non_negative("points.value", point.axial_depth_m, unit);
     require_positive("points.gain", point.gain, "");
@@ -77,8 +97,9 @@ SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& optio
       problem.spatial->cut.direction == cutting::MillingDirection::slot) {
     throw InvalidInput("parameter", "must not be the step-over of a slot, which has no neighbour");
   }
-  const std::unique_ptr<Scheme> scheme = sweep_collocation(problem, options.parameter, options.tolerance);
   const Axes axes = {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.range, options.grid[1])};
+  const ThreadLimit threads(require_affordable_sweep(problem, options, axes));
+  const std::unique_ptr<Scheme> scheme = sweep_collocation(problem, options.parameter, options.tolerance);
   scheme->expect(axes.axial_depth_m);
   SweepResult result;
   result.parameter = options.parameter;
@@ -117,6 +138,8 @@ GainMargin gain_margin(const LobesProblem& problem, const OperatingPoint& point,
   checked.tolerance = tolerance;
   checked.points = {point};
   checked.validate();
+  require_affordable(
+      cost_of_looks(problem, checked, std::array{point.spindle_speed_rad_per_s}, {.a_speed = looks_a_limit}));
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, checked);
   const std::unique_ptr<PointEvaluator> evaluator = scheme->evaluator();
   return search_gain(*evaluator, point, tolerance, Progress::none());

@@ -7,18 +7,18 @@
 #include <numbers>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/lobes_cost.hpp"
 
 namespace robomill::stability {
 namespace {
 
 using namespace detail;
-
-constexpr double most_sampled_points = 1e9;  ///< of all samples' grids
 
 void require_ratio(const char* field, double ratio, double most) {
   if (!(ratio >= 0.0 && ratio <= most)) {
@@ -30,6 +30,7 @@ void require_ratio(const char* field, double ratio, double most) {
 /// Drawn values stay on their own side of zero: a tenth of the value at least.
 double drawn(Random& random, double value, double deviation) {
   const double sample = value + deviation * random.normal();
+  if (value < 0.0) return std::min(sample, 0.1 * value);
   return value > 0.0 ? std::max(sample, 0.1 * value) : sample;
 }
 
@@ -99,11 +100,6 @@ void Uncertainty::validate() const {
   for (const int points : grid) {
     if (points < 2 || points > 20000) throw InvalidInput("grid", points, "", "must lie between 2 and 20000");
   }
-  const double points_asked =
-      static_cast<double>(samples) * static_cast<double>(grid[0]) * static_cast<double>(grid[1]);
-  if (points_asked > most_sampled_points) {
-    throw InvalidInput("samples", samples, "", "must give at most 1e9 points: samples times grid", "200 is usual");
-  }
   require_non_negative("tangential_std_n_per_m2", tangential_std_n_per_m2, "N/m^2");
   require_non_negative("radial_std_n_per_m2", radial_std_n_per_m2, "N/m^2");
   require_ratio("coefficient_std_ratio", coefficient_std_ratio, 1.0);
@@ -112,15 +108,40 @@ void Uncertainty::validate() const {
   require_ratio("residue_std_ratio", residue_std_ratio, 1.0);
 }
 
+namespace {
+
+Axes axes_of(const LobesOptions& options, const Uncertainty& uncertainty) {
+  LobesOptions chart = options;
+  chart.grid = uncertainty.grid;
+  return column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
+}
+
+}  // namespace
+
+Cost cost_of_uncertain_limits(const LobesProblem& problem, const LobesOptions& options,
+                              const Uncertainty& uncertainty) {
+  constexpr double usual_samples = 200.0, usual_speeds = 100.0, usual_depths = 100.0;
+  const double samples = uncertainty.samples, columns = uncertainty.grid[0], depths = uncertainty.grid[1];
+  const CostDriver counted =
+      dominant_of({{.field = "samples", .value = samples, .times_usual = samples / usual_samples},
+                   {.field = "grid",
+                    .value = std::max(columns, depths),
+                    .times_usual = std::max(columns / usual_speeds, columns * depths / usual_speeds / usual_depths)}});
+  return cost_of_looks(problem, options, axes_of(options, uncertainty).spindle_speed_rad_per_s,
+                       {.a_speed = looks_a_limit,
+                        .times = samples,
+                        .bytes = 8.0 * samples * columns + 60.0 * columns * depths,
+                        .counted = counted});
+}
+
 UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions& options,
                                  const Uncertainty& uncertainty, Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   problem.validate();
   options.validate();
   uncertainty.validate();
-  LobesOptions chart = options;
-  chart.grid = uncertainty.grid;
-  const Axes axes = column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
+  const Axes axes = axes_of(options, uncertainty);
+  const ThreadLimit threads(require_affordable(cost_of_uncertain_limits(problem, options, uncertainty)));
   const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
   const std::size_t count = static_cast<std::size_t>(uncertainty.samples);
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -141,10 +162,10 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
 
   UncertainLimits result;
   const Eigen::Index n = static_cast<Eigen::Index>(speeds);
-  const Eigen::Index m = chart.grid[1];
+  const Eigen::Index m = uncertainty.grid[1];
   result.samples = uncertainty.samples;
   result.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), n);
-  result.axial_depth_m = to_eigen(even(chart.axial_depth_m, chart.grid[1]));
+  result.axial_depth_m = to_eigen(even(options.axial_depth_m, uncertainty.grid[1]));
   result.limit_5_percent_m.resize(n);
   result.limit_50_percent_m.resize(n);
   result.limit_95_percent_m.resize(n);

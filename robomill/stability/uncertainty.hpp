@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -38,6 +39,11 @@ struct UncertainLimits {
   int samples = 0;
   double seconds = 0.0;
 };
+
+/// What uncertain_limits is about to take, known before it runs.
+/// @throws InvalidInput if the problem has no modes to compute with
+[[nodiscard]] ROBOMILL_API Cost cost_of_uncertain_limits(const LobesProblem& problem, const LobesOptions& options,
+                                                         const Uncertainty& uncertainty);
 
 /// Draws problems around this one and finds the limit curve of each, over the options' ranges on the uncertainty's own
 /// grid. Same bits at any number of threads.

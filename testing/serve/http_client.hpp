@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -27,12 +28,16 @@ struct HttpAnswer {
 /// A connection to a port of this machine.
 class HttpConnection {
  public:
-  explicit HttpConnection(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// @param from  the last number of the address that it comes from, 127.0.0.N
+  explicit HttpConnection(int port, std::uint32_t from = 1) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address = {};
     address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK - 1 + from);
+    const bool bound = from == 1 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    open_ = socket_ >= 0 && ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    open_ =
+        socket_ >= 0 && bound && ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   }
   ~HttpConnection() {
     if (socket_ >= 0) ::close(socket_);
@@ -44,6 +49,13 @@ class HttpConnection {
   HttpConnection& operator=(HttpConnection&&) = delete;
 
   [[nodiscard]] bool is_open() const { return open_; }
+  /// Ends it without a word: what the other end still sends fails.
+  void reset() {
+    const linger at_once = {.l_onoff = 1, .l_linger = 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+    ::close(std::exchange(socket_, -1));
+    open_ = false;
+  }
   /// False where the other end closed.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {

@@ -60,11 +60,13 @@ describe('what was found, in words', () => {
     }
   });
   it('has words for every reason', () => {
-    expect(['no-signal', 'clipped', 'speed-unknown', 'gap', 'none', 'moon'].map(reasonText)).toEqual([
+    expect(['no-signal', 'clipped', 'speed-unknown', 'gap', 'standstill', 'overloaded', 'none', 'moon'].map(reasonText)).toEqual([
       'no usable signal',
       'signal at the limit of its converter',
       'spindle speed unknown',
       'samples lost',
+      'the spindle stands still',
+      'the monitor was too slow for the samples',
       'reason unknown',
       'moon',
     ]);

@@ -13,6 +13,10 @@ export function reasonText(reason: string | null): string {
       return 'spindle speed unknown';
     case 'gap':
       return 'samples lost';
+    case 'standstill':
+      return 'the spindle stands still';
+    case 'overloaded':
+      return 'the monitor was too slow for the samples';
     default:
       return reason === null || reason === 'none' ? 'reason unknown' : reason;
   }

@@ -11,7 +11,7 @@ export interface Places {
 
 export type MonitorState = 'stable' | 'transition' | 'chatter' | 'blind';
 
-/** A state, and why the monitor could not tell where it is blind: "no-signal", "clipped", "speed-unknown", "gap". */
+/** A state, and why the monitor could not tell where it is blind: "no-signal", "clipped", "speed-unknown", "gap", "standstill", "overloaded". */
 interface Stated {
   state: MonitorState;
   reason: string | null;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
@@ -17,8 +18,6 @@
 
 namespace robomill::coupling {
 namespace {
-
-constexpr double most_lines = 2e6;
 
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
 Segment read_segment(io::TomlFile& file, const std::string& key, const std::string& member) {
@@ -113,6 +112,17 @@ void read_range(io::TomlFile& file, AssemblyFile& out) {
   out.high_hz = range[1];
 }
 
+/// Of the receptances of tool, holder and assembly, and of the FRFs as numbers of a document.
+void require_affordable_lines(double lines, double step_hz, double high_hz) {
+  constexpr double operations_of_line = 3e3, bytes_of_line = 600.0, usual_step_hz = 1.0, usual_high_hz = 8000.0;
+  require_affordable(
+      {.operations = operations_of_line * lines,
+       .bytes = bytes_of_line * lines,
+       .dominant = dominant_of(
+           {{.field = "step_hz", .value = step_hz, .unit = "Hz", .times_usual = usual_step_hz / step_hz},
+            {.field = "range_hz", .value = high_hz, .unit = "Hz", .times_usual = high_hz / usual_high_hz}})});
+}
+
 /// Evenly from low to high, without 0 Hz; empty where no step is given.
 Eigen::VectorXd read_step(io::TomlFile& file, const AssemblyFile& out) {
   double step_hz = 0.0;
@@ -121,10 +131,7 @@ Eigen::VectorXd read_step(io::TomlFile& file, const AssemblyFile& out) {
   if (!file.has("frequency.range_hz")) file.require("frequency.range_hz", "[from, to]");
   // A step such as 0.1 must not lose the last line to rounding.
   const double steps = std::floor((out.high_hz - out.low_hz) / step_hz * (1.0 + 1e-12) + 1e-9);
-  if (!(steps < most_lines)) {
-    throw file.reject("frequency.step_hz", fmt::format("would give {:.3g} lines; at most {:.0f}", steps, most_lines),
-                      "Take a larger step or a shorter range");
-  }
+  file.locate([&] { require_affordable_lines(steps, step_hz, out.high_hz); });
   // A structure has no receptance where it would fly away: a range from 0 begins with its first step.
   const double first = out.low_hz > 0.0 ? 0.0 : 1.0;
   const auto count = static_cast<Eigen::Index>(steps - first) + 1;

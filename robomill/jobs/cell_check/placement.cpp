@@ -53,6 +53,7 @@ Placement judge(const CellFile& cell, const Eigen::Isometry3d& workpiece, const 
   try {
     out.choice = path::choose_posture(*targets.source, places.machine(), posture_options(cell, places.machine()));
   } catch (const InvalidInput& error) {
+    if (!error.parts().where.empty()) throw;  // of the program's file, not of where it stands
     out.no_way = error.parts().field + " " + error.parts().rule;
   }
   return out;

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/folder_change.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
@@ -28,10 +29,10 @@ constexpr std::size_t most_records = 200;
 constexpr std::size_t most_notes = 10;
 constexpr std::uintmax_t largest_record_bytes = std::uintmax_t{256} << 20;
 
-/// A link too, whatever it points to.
+/// A link too, whatever it points to; but not what an earlier call, which was ended, has begun.
 bool is_there(const fs::path& path) {
   std::error_code ignored;
-  return fs::symlink_status(path, ignored).type() > fs::file_type::not_found;
+  return fs::symlink_status(path, ignored).type() > fs::file_type::not_found && !io::is_unfinished(path);
 }
 
 /// Numbers in names count as numbers: hit_2 before hit_10.
@@ -269,7 +270,10 @@ void require_new(const InitFiles& files) {
 
 void write_init(const InitFiles& files) {
   require_new(files);
-  for (std::size_t i = files.files.size(); i-- > 0;) io::write_file(files.files[i].path, files.files[i].text);
+  if (files.files.size() == 1) return io::write_file(files.files.front().path, files.files.front().text);
+  io::FolderChange all(files.files.front().path.parent_path());
+  for (const NewFile& file : files.files) all.write(file.path.filename().string(), file.text);
+  all.commit();
 }
 
 }  // namespace robomill::jobs

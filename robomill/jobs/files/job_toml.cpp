@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -115,9 +116,17 @@ void read_cuts(io::TomlFile& file, Job& job) {
 
 void Job::validate() const {
   require_non_negative("max_axial_depth_m", recommend.max_axial_depth_m, "m");
+  if (recommend.max_axial_depth_m > 0.5) {
+    throw InvalidInput("max_axial_depth_m", recommend.max_axial_depth_m, "m", "is deeper than any milling cut",
+                       "It is the length of the cutter's edges; are the units mixed up?");
+  }
   finish.validate();
-  require_non_negative("min_spindle_speed_rad_per_s", recommend.min_spindle_speed_rad_per_s, "rad/s");
-  require_non_negative("max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s, "rad/s");
+  const std::pair<const char*, double> range[] = {
+      {"min_spindle_speed_rad_per_s", recommend.min_spindle_speed_rad_per_s},
+      {"max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s}};
+  for (const auto& [name, speed] : range) {
+    if (speed != 0.0) cutting::require_spindle_speed(name, speed);
+  }
   if (recommend.max_spindle_speed_rad_per_s > 0.0 &&
       recommend.max_spindle_speed_rad_per_s <= recommend.min_spindle_speed_rad_per_s) {
     throw InvalidInput("max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s, "rad/s",
@@ -134,7 +143,7 @@ void Job::validate() const {
   for (std::size_t i = 0; i < recommend.spindle.size(); ++i) {
     const std::string path = "spindle[" + std::to_string(i + 1) + "].";
     const decision::SpindleCapacity& p = recommend.spindle[i];
-    require_positive((path + "spindle_speed_rad_per_s").c_str(), p.spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s);
     require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
     require_non_negative((path + "power_w").c_str(), p.power_w, "W");
     if (i > 0 && p.spindle_speed_rad_per_s <= recommend.spindle[i - 1].spindle_speed_rad_per_s) {
@@ -144,7 +153,7 @@ void Job::validate() const {
   }
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     const std::string path = "cuts[" + std::to_string(i + 1) + "].";
-    require_positive((path + "spindle_speed_rad_per_s").c_str(), cuts[i].spindle_speed_rad_per_s, "rad/s");
+    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", cuts[i].spindle_speed_rad_per_s);
     require_positive((path + "axial_depth_m").c_str(), cuts[i].axial_depth_m, "m");
     require_non_negative((path + "sample_rate_hz").c_str(), cuts[i].sample_rate_hz, "Hz");
     for (const double peak_hz : cuts[i].peaks_hz) require_positive((path + "peaks_hz").c_str(), peak_hz, "Hz");

@@ -414,6 +414,7 @@ stability::SweepOptions sweep_options(const LobesFile& file) {
 }
 
 void LobesFile::drop_dynamics() {
+  dropped_dynamics = true;
   modes.clear();
   frf.clear();
   cell.clear();

@@ -55,6 +55,8 @@ struct LobesFile {
   std::vector<Assumption> assumed = {};               ///< of these files
   std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 
+  bool dropped_dynamics = false;  ///< by drop_dynamics()
+
   /// Forgets the tool's structure: another stands in its place.
   ROBOMILL_API void drop_dynamics();
   /// Checks what the problem still needs, with errors in the file's words where there is one: call it when dynamics is

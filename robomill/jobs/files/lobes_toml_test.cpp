@@ -86,6 +86,10 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
   EXPECT_NEAR(found.radial_n_per_m2, 250e6, 1.0);
   EXPECT_NEAR(found.tangential_edge_n_per_m, 20e3, 1e-3);
   EXPECT_NEAR(found.radial_edge_n_per_m, 30e3, 1e-3);
+  // What a fit writes is read, also where the tooth is pulled in.
+  for (cutting::SlotForce& slot : slots.slots) slot.mean_force_n[0] += 8e-3 / 4 * 450e6 * slot.feed_per_tooth_m;
+  folder.file("pulls.toml", cutting::slot_fit_toml(cutting::identify_from_slots(slots.slots, {.teeth = 4}), slots));
+  EXPECT_NEAR(read("file = \"pulls.toml\"\n").radial_n_per_m2, -200e6, 1.0);
   folder.file("length.toml",
               "[coefficients]\ntangential_n_per_mm2 = [100, 600]\ntangential_edge_n_per_mm = 20\n"
               "edge_per = \"edge-length\"\n");
@@ -99,6 +103,16 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
   const std::string message = test::rejection([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
   EXPECT_NE(message.find("lobes.toml:11: coefficients.file"), std::string::npos) << message;
   EXPECT_NE(message.find("tangential_n_per_m2 = 600000"), std::string::npos) << message;
+}
+
+TEST(LobesToml, ARadialNumberThatPullsIsWarnedOf) {
+  const test::Folder folder;
+  const LobesFile file =
+      read_lobes(folder.file("lobes.toml", with("radial_n_per_mm2 = 200", "radial_n_per_mm2 = -200")));
+  EXPECT_DOUBLE_EQ(file.problem.milling.coefficients.radial_n_per_m2, -200e6);
+  ASSERT_FALSE(file.notes.empty());
+  EXPECT_NE(file.notes.front().find("coefficients.radial_n_per_mm2 = -200 N/mm^2; is unusual"), std::string::npos)
+      << file.notes.front();
 }
 
 std::string joined(const std::vector<std::string>& notes) {

@@ -1,33 +1,55 @@
-#include "robomill/io/file.hpp"
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "robomill/io/folder_change.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-/// What an earlier run computed from modes that this one has not.
-void remove_later_stages(const std::filesystem::path& folder) {
-  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv", "blocks.csv", "blocks.json"})
-    io::remove_file(folder / name);
-}
+constexpr const char *plan_name = "plan.json", *monitor_name = "monitor.toml";
 
-constexpr const char* monitor_name = "monitor.toml";
+/// A plan's documents in its folder, which change together.
+class PlanFolder {
+ public:
+  explicit PlanFolder(const std::filesystem::path& folder) : folder_(folder), change_(folder) {}
 
-/// The decided program and its monitor; without them what an earlier run left.
-void write_decided(const std::filesystem::path& folder, const PlanResult& result) {
-  if (!result.decision) return;
-  if (result.program_out) {
-    io::write_file(folder / result.program_name, result.program_out->text);
-  } else {
-    io::remove_file(folder / ("program" + result.job.program.extension().string()));
+  void write(const std::string& name, std::string_view content) {
+    names_.push_back(name);
+    change_.write(name, content);
   }
-  if (result.monitor) {
-    io::write_file(folder / monitor_modes_name, result.monitor->modes_json);
-    io::write_file(folder / monitor_name, result.monitor->toml);
-  } else {
-    for (const char* name : {monitor_modes_name, monitor_name}) io::remove_file(folder / name);
+  /// Of a trajectory, or of that of an earlier run.
+  void place(const SmoothResult& path) {
+    const std::string name = path.output.filename().string();
+    names_.push_back(name);
+    if (path.trajectory) {
+      change_.add(name, path.trajectory->finish());
+    } else if (path.stale) {
+      change_.remove(name);
+    }
   }
-}
+  /// Takes away what an earlier run has written and this one has not.
+  void commit(const std::string& program) {
+    std::error_code ignored;
+    const bool earlier = std::filesystem::is_regular_file(folder_ / plan_name, ignored);
+    for (const std::string& name :
+         {std::string("tip.uff"), std::string("modes.json"), std::string("lobes.json"), std::string("forces.csv"),
+          std::string("blocks.csv"), std::string("blocks.json"), std::string("smooth.json"),
+          std::string("trajectory.csv"), std::string(monitor_modes_name), std::string(monitor_name), program}) {
+      if (earlier && !name.empty() && std::ranges::find(names_, name) == names_.end()) change_.remove(name);
+    }
+    change_.commit();
+  }
+
+ private:
+  std::filesystem::path folder_;
+  io::FolderChange change_;
+  std::vector<std::string> names_;
+};
 
 /// What stands beside the report.
 std::vector<page::StageFile> stage_files(const PlanResult& result) {
@@ -72,29 +94,30 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
 }  // namespace
 
 void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
-  io::make_folder(folder);
   const io::Json plan = plan_object(result);
   const page::Report report = report_of(result, stage_files(result), plan);
   const std::string page = page::report_html(report);
-  if (result.frfs) modal::write_frfs(folder / "tip.uff", *result.frfs);
-  if (!report.modes.empty()) io::write_file(folder / "modes.json", report.modes);
-  if (result.has_lobes()) {
-    io::write_file(folder / "lobes.json", report.lobes);
-  } else {
-    remove_later_stages(folder);
-  }
-  if (result.forces) io::write_file(folder / "forces.csv", forces_csv(*result.forces));
+  PlanFolder files(folder);
+  if (result.frfs) files.write("tip.uff", modal::frf_uff(*result.frfs));
+  if (!report.modes.empty()) files.write("modes.json", report.modes);
+  if (result.has_lobes()) files.write("lobes.json", report.lobes);
+  if (result.forces) files.write("forces.csv", forces_csv(*result.forces));
   if (result.blocks) {
-    io::write_file(folder / "blocks.csv", blocks_csv(*result.forces, *result.blocks));
-    io::write_file(folder / "blocks.json", report.blocks);
+    files.write("blocks.csv", blocks_csv(*result.forces, *result.blocks));
+    files.write("blocks.json", report.blocks);
   }
-  write_decided(folder, result);
+  if (result.program_out) files.write(result.program_name, result.program_out->text);
+  if (result.monitor) {
+    files.write(monitor_modes_name, result.monitor->modes_json);
+    files.write(monitor_name, result.monitor->toml);
+  }
   if (result.path) {
-    place(*result.path);
-    io::write_file(folder / "smooth.json", report.smooth);
+    files.place(*result.path);
+    files.write("smooth.json", report.smooth);
   }
-  io::write_file(folder / "plan.json", plan_text(plan));
-  io::write_file(folder / "report.html", page);
+  files.write(plan_name, plan_text(plan));
+  files.write("report.html", page);
+  files.commit(result.job.program.empty() ? "" : "program" + result.job.program.extension().string());
 }
 
 }  // namespace robomill::jobs

@@ -29,8 +29,8 @@ void StateLog::add(double time_s, monitor::State state, monitor::BlindReason rea
   }
 }
 
-void StateLog::leave_out(double time_s) {
-  add(time_s, monitor::State::blind, silence_s_ > 0.0 ? monitor::BlindReason::no_signal : monitor::BlindReason::gap);
+void StateLog::leave_out(double time_s, monitor::BlindReason reason) {
+  add(time_s, monitor::State::blind, silence_s_ > 0.0 ? monitor::BlindReason::no_signal : reason);
 }
 
 void StateLog::silent(double time_s, double seconds) {

@@ -14,8 +14,8 @@ class StateLog {
   /// The state from this time on; the first also holds before it. A time before the last one counts as that.
   void add(double time_s, monitor::State state, monitor::BlindReason reason = monitor::BlindReason::none);
 
-  /// From this time on frames were left out: BlindReason::gap, or no_signal where time without samples went before.
-  void leave_out(double time_s);
+  /// From this time on frames were left out, for this reason, or no_signal where time without samples went before.
+  void leave_out(double time_s, monitor::BlindReason reason = monitor::BlindReason::gap);
   /// So much more time went by without samples, by the clock, at this time of the stream.
   void silent(double time_s, double seconds);
 

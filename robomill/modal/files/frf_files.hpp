@@ -52,6 +52,8 @@ ROBOMILL_API void write_frfs(const std::filesystem::path& path, const FrfSet& se
 ROBOMILL_API void write_frfs(const std::filesystem::path& path, const FrfResult& result,
                              const FrfWriteOptions& options = {});
 
+/// tip.uff as bytes, as data set 58 or 58b.
+[[nodiscard]] ROBOMILL_API std::string frf_uff(const FrfSet& set, bool binary = false);
 /// tip.json as text. @throws InvalidInput if the set is not valid
 [[nodiscard]] ROBOMILL_API std::string frf_json(const FrfSet& set);
 /// tip.json with verdicts, grades and notes.

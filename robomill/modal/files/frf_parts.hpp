@@ -42,7 +42,6 @@ struct FrfParts {
 [[nodiscard]] FrfParts read_frf_json(const std::filesystem::path& path);
 
 [[nodiscard]] std::string frf_table(const FrfSet& set, char separator);
-[[nodiscard]] std::string frf_uff(const FrfSet& set, bool binary);
 void write_frf_mat(const std::filesystem::path& path, const FrfSet& set);
 
 /// The FRF that text names. @throws InvalidInput with where

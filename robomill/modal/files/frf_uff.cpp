@@ -9,6 +9,7 @@
 #include "robomill/io/si.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
 namespace robomill::modal {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/signal/fft.hpp"
 #include "robomill/signal/window.hpp"
@@ -92,6 +93,19 @@ Eigen::VectorXd tail_power(const std::vector<Tail>& tails, const Layout& layout)
   return power * (window_power / static_cast<double>(tails.size()));
 }
 
+/// Of records that are padded to a length: a transform of each channel, and of each line what the window's decay takes
+/// to be removed.
+void require_affordable_transforms(double samples, const std::vector<Struck>& hits, const HitOptions& options) {
+  constexpr double operations_of_sample = 300.0, operations_of_line = 5e3, bytes_of_sample = 100.0;
+  double channels = 0.0;
+  for (const Struck& struck : hits) channels += 1.0 + static_cast<double>(struck.hit->responses.size());
+  const double of_line = options.exponential_window == ExponentialWindow::off ? 0.0 : operations_of_line;
+  require_affordable(
+      {.operations = samples * (channels * operations_of_sample + of_line),
+       .bytes = samples * bytes_of_sample,
+       .dominant = {.field = "frequency_resolution_hz", .value = options.frequency_resolution_hz, .unit = "Hz"}});
+}
+
 }  // namespace
 
 Index stretch_begin(const Pulse& pulse) {
@@ -110,10 +124,11 @@ Layout lay_out(const std::vector<Struck>& hits, const HitOptions& options) {
   }
   if (options.frequency_resolution_hz > 0.0) {
     const double wanted = std::round(layout.sample_rate_hz / options.frequency_resolution_hz);
-    if (!(wanted >= 64.0 && wanted <= 1e7)) {
+    if (!(wanted >= 64.0)) {
       throw InvalidInput("frequency_resolution_hz", options.frequency_resolution_hz, "Hz",
-                         "must leave between 64 and 1e7 samples in a transform");
+                         "must leave at least 64 samples in a transform");
     }
+    require_affordable_transforms(wanted, hits, options);
     layout.transform = static_cast<Index>(wanted);
     layout.samples = std::min(layout.samples, layout.transform);
   }

@@ -18,6 +18,11 @@ io::Json text_or_null(const std::string& text) {
   return text.empty() ? io::Json(nullptr) : io::Json(text);
 }
 
+/// Of names of files whatever their bytes.
+std::string line_of(const io::Json& json) {
+  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace) + '\n';
+}
+
 }  // namespace
 
 const char* to_string(MonitorEvent::Kind kind) {
@@ -92,7 +97,22 @@ std::string event_line(const MonitorEvent& event) {
   }
   if (event.kind == MonitorEvent::Kind::recording) json["file"] = text_or_null(event.file);
   if (!event.message.empty()) json["message"] = event.message;
-  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace) + '\n';
+  return line_of(json);
+}
+
+std::string started_line(const SessionStart& start) {
+  io::Json json = {{"time_s", 0.0},        {"event", "started"},     {"started", start.started},
+                   {"input", start.input}, {"config", start.config}, {"version", start.version}};
+  if (!start.message.empty()) json["message"] = start.message;
+  return line_of(json);
+}
+
+std::string lost_events_line(std::uint64_t count) {
+  return line_of({{"time_s", nullptr},
+                  {"event", "stream"},
+                  {"what", "events-lost"},
+                  {"count", count},
+                  {"message", "events that could not be written here were too many to keep"}});
 }
 
 }  // namespace robomill::monitor

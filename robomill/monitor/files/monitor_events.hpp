@@ -67,6 +67,19 @@ struct MonitorEvent {
 /// One line of JSON with its end. What is not known is null; numbers are finite.
 [[nodiscard]] ROBOMILL_API std::string event_line(const MonitorEvent& event);
 
+/// What a session writes first into a file of events that goes on from one session to the next.
+struct SessionStart {
+  std::string started = {};  ///< "2026-11-27T07:48:41Z"
+  std::string input = {};    ///< a file or an address
+  std::string config = {};   ///< monitor.toml
+  std::string version = {};  ///< of robomill
+  std::string message = {};  ///< for people
+};
+/// "started", as a line of JSON with its end.
+[[nodiscard]] ROBOMILL_API std::string started_line(const SessionStart& start);
+/// "stream" with `what` "events-lost", in the place of so many lines that could not be written.
+[[nodiscard]] ROBOMILL_API std::string lost_events_line(std::uint64_t count);
+
 /// For people, of MonitorEvent::line_hz: "989.0 Hz folded"; "661.0, 989.0 or 2311.0 Hz". Empty of none.
 [[nodiscard]] ROBOMILL_API std::string line_text(const std::vector<double>& line_hz);
 

@@ -161,6 +161,7 @@ void read_signal(io::TomlFile& file, MonitorFile& out) {
 void read_process(io::TomlFile& file, MonitorFile& out) {
   file.number("process.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, out.options.spindle_speed_rad_per_s);
   file.number("process.spindle_speed_std_ratio", "speed_std_ratio", 1.0, out.options.speed_std_ratio);
+  file.number("process.min_speed_rpm", "min_speed_rad_per_s", units::rpm, out.options.min_speed_rad_per_s);
   file.integer("process.teeth", "teeth", out.options.teeth);
 }
 
@@ -187,7 +188,8 @@ void check_options(const io::TomlFile& file, const MonitorFile& monitor) {
     } catch (const InvalidInput& error) {
       // A number of samples, where the file has a time.
       if (error.parts().unit != "samples") throw;
-      throw file.reject(error.parts().field == "hop_s" ? "detector.hop_ms" : "detector.window_ms", error.parts().rule);
+      throw file.reject(error.parts().field == "hop_s" ? "detector.hop_ms" : "detector.window_ms", error.parts().rule,
+                        error.parts().hint);
     }
   });
 }
@@ -255,6 +257,9 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   if (o.full_scale > 0.0) line("full_scale", number_text(o.full_scale));
   out += "\n[process]\n";
   if (o.spindle_speed_rad_per_s > 0.0) line("spindle_speed_rpm", number_text(o.spindle_speed_rad_per_s / units::rpm));
+  if (o.min_speed_rad_per_s != MonitorOptions().min_speed_rad_per_s) {
+    line("min_speed_rpm", number_text(o.min_speed_rad_per_s / units::rpm));
+  }
   if (o.teeth > 0) line("teeth", std::to_string(o.teeth));
   if (!file.modes.empty()) line("modes", io::toml_quoted(file.modes.string()));
   if (!file.lobes.empty()) line("lobes", io::toml_quoted(file.lobes.string()));

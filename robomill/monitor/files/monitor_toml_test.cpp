@@ -20,7 +20,7 @@ TEST(MonitorToml, ReadsEveryKey) {
       "monitor.toml",
       "[signal]\nsample_rate_hz = 10240\nanti_alias_filter = true\nchannels = [\"ax\", \"ay\"]\n"
       "tachometer = \"pulse\"\ncolumns = 5\nscale = 50\nfull_scale = 49.9\n"
-      "[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"
+      "[process]\nspindle_speed_rpm = 3000\nmin_speed_rpm = 60\nteeth = 2\n"
       "modes = \"modes.json\"\nlobes = \"lobes.toml\"\n"
       "[detector]\nkind = \"energy-entropy\"\nwindow_ms = 50\nhop_ms = 25\n"
       "bands = 8\nentropy = \"normalised\"\nthreshold = 1.5\n"
@@ -42,6 +42,7 @@ TEST(MonitorToml, ReadsEveryKey) {
   EXPECT_EQ(file.options.tachometer_channel, 2);
   EXPECT_EQ(file.options.full_scale, 49.9);
   EXPECT_NEAR(file.options.spindle_speed_rad_per_s, 100.0 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(file.options.min_speed_rad_per_s, 2.0 * std::numbers::pi, 1e-12);
   EXPECT_EQ(file.options.teeth, 2);
   EXPECT_EQ(file.modes, folder.at("modes.json"));
   EXPECT_EQ(file.lobes, folder.at("lobes.toml"));
@@ -81,6 +82,7 @@ TEST(MonitorToml, HasDefaults) {
   const MonitorFile file = read_monitor(folder.file("monitor.toml", least));
   EXPECT_EQ(file.options.kind, Kind::comb_cusum);
   EXPECT_FALSE(file.anti_alias_filter);
+  EXPECT_NEAR(file.options.min_speed_rad_per_s, std::numbers::pi, 1e-12);
   EXPECT_EQ(file.options.tachometer_channel, -1);
   EXPECT_EQ(file.metrics_port, -1);
   EXPECT_EQ(file.recording_s, 60.0);
@@ -117,6 +119,12 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   expect("[detector]\nhop_ms = 0\n", "m.toml:5: detector.hop_ms = 0");
   expect("[detector]\nhop_ms = 1\n", "m.toml:5: detector.hop_ms = 1 ms; must be at least 16 samples long");
   expect("[detector]\nhop_ms = 60\n", "detector.window_ms");
+  expect("[detector]\nwindow_ms = 1e6\n",
+         "m.toml:5: detector.window_ms = 1e+06 ms; must be at most 1000000 samples long. Is it in us? 50 ms is usual");
+  expect("[detector]\nhop_ms = 2.5e5\nwindow_ms = 50\n",
+         "m.toml:5: detector.hop_ms = 250000 ms; must be at most 1000000 samples long. Is it in us? 25 ms is usual");
+  expect("[detector]\nwindow_ms = 0.05\nhop_ms = 25\n",
+         "m.toml:5: detector.window_ms = 0.05 ms; must be at least 32 samples long. Is it in s? 50 ms is usual");
   expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be in [2, 64]");
   expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing; must be finite");
   expect("[detector]\nkind = \"magic\"\n", "must be one of \"comb-cusum\", \"energy-entropy\"");
@@ -124,6 +132,11 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   expect("[detector]\ntreshold = 5\n", "threshold");
   expect("[process]\nteeth = -1\n", "m.toml:5: process.teeth = -1");
   expect("[process]\nspindle_speed_rpm = -100\n", "m.toml:5: process.spindle_speed_rpm = -100 rpm");
+  expect(
+      "[process]\nspindle_speed_rpm = 20\n",
+      "m.toml:5: process.spindle_speed_rpm = 20 rpm; must be at least the speed below which the spindle stands still "
+      "and nothing is judged. Is it in 1/s?");
+  expect("[process]\nmin_speed_rpm = 0\n", "m.toml:5: process.min_speed_rpm = 0 rpm; must be between 1 and 100000 rpm");
   expect("[mqtt]\nport = 70000\n", "m.toml:5: mqtt.port = 70000");
   expect("[mqtt]\nca_file = \"ca.pem\"\n", "needs mqtt.tls = true");
   expect("[mqtt]\ntls = true\nkey_file = \"k\"\n", "go together");
@@ -185,6 +198,7 @@ TEST(MonitorToml, IsReadAsItWasWritten) {
   file.options.threshold = 0.1234567890123;
   file.options.alarm_below = true;
   file.options.spindle_speed_rad_per_s = 4000.0 * units::rpm;
+  file.options.min_speed_rad_per_s = 100.0 * units::rpm;
   const std::string text = monitor_toml(file, "calibrated on\ntwo lines");
   EXPECT_EQ(text.rfind("# calibrated on\n# two lines\n[signal]\n", 0), 0U);
   EXPECT_NE(text.find("spindle_speed_rpm = 4000\n"), std::string::npos);
@@ -193,6 +207,7 @@ TEST(MonitorToml, IsReadAsItWasWritten) {
   EXPECT_EQ(back.options.kind, file.options.kind);
   EXPECT_EQ(back.options.threshold, file.options.threshold);
   EXPECT_EQ(back.options.alarm_below, true);
+  EXPECT_NEAR(back.options.min_speed_rad_per_s, file.options.min_speed_rad_per_s, 1e-12);
   EXPECT_EQ(back.options.tachometer_channel, 2);
   EXPECT_EQ(monitor_toml(back), monitor_toml(file));
   EXPECT_EQ(text.find("anti_alias_filter"), std::string::npos);

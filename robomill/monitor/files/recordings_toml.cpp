@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -88,6 +89,7 @@ std::vector<Recording> read_samples(RecordingsFile& file, Progress& progress) {
     while (source->next(block_frames, block)) {
       recording.samples.insert(recording.samples.end(), block.samples.begin(), block.samples.end());
     }
+    std::ranges::copy(source->notes(), std::back_inserter(file.monitor.notes));
     out.push_back(std::move(recording));
     progress.advance();
   }

@@ -32,7 +32,7 @@ struct RecordingsFile {
 [[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const io::TomlSource& source);
 
 /// The samples of the labelled recordings, in their order. All run at one rate: that of recordings.toml, else the first
-/// one's, which is then the file's.
+/// one's, which is then the file's. What is remarkable of one, such as that it was cut, becomes a note of the file.
 /// @throws InvalidInput as io::open_samples and SampleSource::next
 /// @throws Interrupted when progress asks to stop
 [[nodiscard]] ROBOMILL_API std::vector<Recording> read_samples(RecordingsFile& file,

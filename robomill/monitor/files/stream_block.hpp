@@ -17,7 +17,7 @@ namespace robomill::monitor {
 struct StreamBlock {
   std::uint64_t sequence = 0;   ///< one more in each block
   double sample_rate_hz = 0.0;  ///< [Hz], > 0
-  /// [rad/s]; NaN: not known
+  /// [rad/s]; NaN or negative: not known; 0: the spindle stands still
   double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
   int channels = 0;            ///< 1 to 256
   std::vector<float> samples;  ///< channels interleaved; NaN and ±inf may stand in them

@@ -217,11 +217,13 @@ bool CutTests::stands_alone() const noexcept {
 }
 
 bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
+  const bool known = given_ && cut_.known() && speed_.rotation_hz() >= lowest_rotation_hz;
+  const double off_hz = known ? speed_.rotation_hz() : 0.0;  // of which the orders are taken off
   std::array<double, blocks> sum = {};
   for (std::size_t c = 0; c < setup_.channels; ++c) {
     if ((bad_channels >> c & 1U) != 0) continue;
     std::array<double, blocks> own = {};
-    spectra_.course(c, frequency_hz, given_ && cut_.known() ? speed_.rotation_hz() : 0.0, own);
+    spectra_.course(c, frequency_hz, off_hz, own);
     for (std::size_t b = 0; b < blocks; ++b) sum[b] += own[b];
   }
   return sum.back() < rung_down * *std::ranges::max_element(sum);
@@ -335,13 +337,14 @@ double CutTests::count(const Finding& found) noexcept {
                    part(counts_.alone, hops(alone_alarm_s)), found.runaway ? 1.0 : 0.0});
 }
 
-CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t frames,
-                                 std::uint64_t bad_channels) noexcept {
+CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t frames, std::uint64_t bad_channels,
+                                 bool still) noexcept {
   spectra_.push(samples, frames);
   spectra_.transform();
   measure(bad_channels);
   cut_.step(found_.back(), speed_, chatter_);
-  const Finding found = find(bad_channels);
+  Finding found = find(bad_channels);
+  if (still && !chatter_) found = {};
   const double evidence = count(found);
   if (found.any()) {
     short_frequency_hz_ = found.frequency_hz;

@@ -67,7 +67,9 @@ class CutTests {
   /// A hop.
   /// @param samples       of all channels, channel after channel, without offset, `frames` each
   /// @param bad_channels  bit c: left out
-  Verdict step(std::span<const float> samples, std::size_t frames, std::uint64_t bad_channels) noexcept;
+  /// @param still         the spindle stands still: no chatter begins
+  Verdict step(std::span<const float> samples, std::size_t frames, std::uint64_t bad_channels,
+               bool still = false) noexcept;
   /// As after construction; the hint stays.
   void reset() noexcept;
   /// Of a channel, the last 0.15 s.

@@ -9,16 +9,15 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double reach = 6.0;               // 1/T, to each side of an order that it is taken off
-constexpr std::size_t kernel_rows = 16;     // from one line to the next
-constexpr float skirt = 0.5F;               // of an order's energy, over the square of the distance
-constexpr double teeth_guard = 2.0;         // 1/T
-constexpr int most_parts = 6;               // of an order, where it may be a multiple of the rotation
-constexpr float fewest_apart = 4.5F;        // 1/T, that these stand apart: 15 Hz, the slowest rotation that is sought
-constexpr std::size_t folds_a_line = 2;     // of 1/T
-constexpr std::size_t fewest_folds = 20;    // whose median is the floor; with fewer it is that of the lines
-constexpr std::size_t line_folds = 5;       // that a line spreads over
-constexpr double lowest_rotation_hz = 5.0;  // so many orders are kept room for
+constexpr double reach = 6.0;             // 1/T, to each side of an order that it is taken off
+constexpr std::size_t kernel_rows = 16;   // from one line to the next
+constexpr float skirt = 0.5F;             // of an order's energy, over the square of the distance
+constexpr double teeth_guard = 2.0;       // 1/T
+constexpr int most_parts = 6;             // of an order, where it may be a multiple of the rotation
+constexpr float fewest_apart = 4.5F;      // 1/T, that these stand apart: 15 Hz, the slowest rotation that is sought
+constexpr std::size_t folds_a_line = 2;   // of 1/T
+constexpr std::size_t fewest_folds = 20;  // whose median is the floor; with fewer it is that of the lines
+constexpr std::size_t line_folds = 5;     // that a line spreads over
 
 }  // namespace
 

@@ -16,6 +16,10 @@ namespace robomill::monitor {
 /// As near as this [1/T] a line cannot be distinguished from an order.
 inline constexpr double on_an_order = 0.75;
 
+/// Orders of a slower rotation stand closer together than a window tells apart: they are not looked for, and what a hop
+/// costs does not follow the speed.
+inline constexpr double lowest_rotation_hz = 5.0;
+
 /// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of
 /// amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the middle.
 struct Spectrum {

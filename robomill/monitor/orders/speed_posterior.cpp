@@ -115,14 +115,14 @@ void SpeedPosterior::predict(Motion motion) noexcept {
 }
 
 void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like) noexcept {
-  if (hint_hz_ <= 0.0) return;
+  std::ranges::fill(shares_, 0.0F);
+  if (hint_hz_ < lowest_rotation_hz) return;
   const WindowEnergy energy = energy_of(power, like, setup_.highest_hz);
   if (energy.whole <= 0.0) return;
   const int teeth = std::max(1, setup_.teeth);
   const int low_orders = setup_.teeth > 0 ? low_of_teeth * teeth : low_of_unknown_teeth;
   lines_ = std::max(0.0, energy.lines - 1.0);
   const double weight = 2.0 * setup_.hop_s / like.seconds;
-  std::ranges::fill(shares_, 0.0F);
   const auto believed = [](double p) { return p > believable; };
   const auto first = std::ranges::find_if(belief_, believed) - belief_.begin();
   const auto end = std::find_if(belief_.rbegin(), belief_.rend() - first, believed).base() - belief_.begin();
@@ -194,7 +194,7 @@ void SpeedPosterior::conclude() noexcept {
 }
 
 void SpeedPosterior::refine(std::span<const float> power, const Spectrum& like) noexcept {
-  if (rotation_hz_ <= 0.0) return;
+  if (rotation_hz_ < lowest_rotation_hz) return;
   const auto last = std::min(power.size() - 2, static_cast<std::size_t>(setup_.highest_hz / like.step_hz));
   const double order_step = rotation_hz_ / like.step_hz;
   const double reach_lines = peak_reach / (like.seconds * like.step_hz);

@@ -17,7 +17,7 @@ namespace robomill::monitor {
 /// windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.08 % a hop, and with a probability
 /// of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint. Candidates near the mains' frequency
 /// count no lines below 190 Hz, unless the hint is there. Beyond the candidates whose belief is above 1e-15 none is
-/// looked at: ln L = 0.
+/// looked at: ln L = 0. About a hint below lowest_rotation_hz nothing is learnt from the windows.
 ///
 /// Nothing is allocated after construction.
 class SpeedPosterior {

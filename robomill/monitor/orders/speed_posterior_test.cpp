@@ -154,6 +154,22 @@ TEST(SpeedPosterior, WithoutAHintThereIsNone) {
   EXPECT_EQ(speed.known(), 0.0);
 }
 
+// Orders closer than a window tells apart say nothing, and looking for millions of them would take minutes:
+// ctest's limit would show it.
+TEST(SpeedPosterior, NothingIsLearntOfASpeedWhoseOrdersCannotBeToldApart) {
+  Random random(8);
+  for (const double hint_hz : {1e-3, 0.5, 4.9}) {
+    SpeedPosterior speed = posterior(80.0, 3);
+    listen(speed, sum_of(cut_of(80.0, 3, random), rate_hz, 0.8, 0.1));
+    EXPECT_GT(speed.share(), 0.7);
+    speed.set_hint(hint_hz);
+    listen(speed, sum_of(cut_of(80.0, 3, random), rate_hz, 0.8, 0.1));
+    EXPECT_NEAR(speed.rotation_hz(), hint_hz, 0.1 * hint_hz);
+    EXPECT_EQ(speed.share(), 0.0) << hint_hz;
+    EXPECT_LT(speed.known(), 0.4) << hint_hz;
+  }
+}
+
 TEST(SpeedPosterior, SilenceAndHugeSignalsLeaveItFinite) {
   for (const double amplitude : {0.0, 1e-15, 1e12}) {
     SpeedPosterior speed = posterior(80.0, 0);

@@ -39,11 +39,16 @@ void EntropyDetector::decide(const Hop& hop, Decision& decision) noexcept {
   seen_ += hop.frames;
   decision.score = decision.energy_entropy;
   decision.threshold = options_.threshold;
-  decision.spindle_speed_rad_per_s = spindle_speed_rad_per_s_;
+  const bool nothing_begins = hop.still && state_ != State::chatter;
   const bool beyond = seen_ >= warm_up_ && (options_.alarm_below ? decision.score < options_.threshold
                                                                  : decision.score > options_.threshold);
-  state_ = beyond ? State::chatter : state_ == State::chatter ? State::transition : State::stable;
+  state_ = beyond && !nothing_begins ? State::chatter : state_ == State::chatter ? State::transition : State::stable;
   decision.state = state_;
+  if (hop.still) {
+    decision.reason = BlindReason::standstill;
+  } else {
+    decision.spindle_speed_rad_per_s = spindle_speed_rad_per_s_;
+  }
 }
 
 }  // namespace robomill::monitor

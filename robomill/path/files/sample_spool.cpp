@@ -1,5 +1,6 @@
 #include "robomill/path/files/sample_spool.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr std::size_t chunk_rows = 4096;
 SampleSpool::SampleSpool(const std::filesystem::path& beside) : beside_(beside) {
   const std::filesystem::path folder = beside.has_parent_path() ? beside.parent_path() : ".";
   std::string name = (folder / (".robomill-samples-" + std::string(6, 'X'))).string();
-  const int descriptor = ::mkstemp(name.data());
+  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) fail("cannot be written");
   ::unlink(name.c_str());
   file_.reset(::fdopen(descriptor, "w+b"));

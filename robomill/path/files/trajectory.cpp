@@ -1,8 +1,6 @@
 #include "robomill/path/files/trajectory.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -47,33 +45,19 @@ std::optional<ProgramRun> SampleFile::verify(program::Source& /*program*/, const
 
 void SampleFile::state_collisions(const std::string& /*found*/) {}
 
-void require_regular(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InvalidInput(path.string(), "must be a regular file", "A trajectory appears whole, by renaming");
-  }
+void SampleFile::commit() {
+  finish().commit();
 }
 
-PendingText::PendingText(const std::filesystem::path& path) : path_(path), pending_((require_regular(path), path)) {
-  restart();
-}
-
-void PendingText::require(bool good) const {
-  if (!good) throw InvalidInput(path_.string(), "cannot be written", errno != 0 ? std::strerror(errno) : "");
-}
+PendingText::PendingText(const std::filesystem::path& path) : pending_(path) {}
 
 void PendingText::restart() {
   buffer_.clear();
-  file_.reset();
-  errno = 0;
-  file_.reset(std::fopen(pending_.temporary().c_str(), "wb"));
-  require(file_ != nullptr);
+  pending_.resize(0);
 }
 
 void PendingText::flush() {
-  errno = 0;
-  require(std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size());
+  pending_.write({buffer_.data(), buffer_.size()});
   buffer_.clear();
 }
 
@@ -81,11 +65,10 @@ void PendingText::drain() {
   if (buffer_.size() >= large) flush();
 }
 
-void PendingText::commit() {
+io::PendingFile& PendingText::finish() {
   flush();
-  errno = 0;
-  require(std::fclose(file_.release()) == 0);
-  pending_.commit();
+  pending_.prepare();
+  return pending_;
 }
 
 std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, const TrajectoryInfo& info) {

@@ -18,6 +18,10 @@
 
 // Method: robomill/path/README.md, "Files"
 
+namespace robomill::io {
+class PendingFile;
+}
+
 namespace robomill::path {
 
 /// Makers of arms whose names are known, as messages spell them.
@@ -91,8 +95,11 @@ class ROBOMILL_API SampleFile {
   /// Of files that have a header (.h5 and joint programs), before commit: what a check for collisions found, for it.
   /// Without it the header says that nothing was checked.
   virtual void state_collisions(const std::string& found);
-  /// Ends the file and moves it to its place. @throws InvalidInput if that fails
-  virtual void commit() = 0;
+  /// Ends the file, which is whole then under its temporary name, for whoever places it with others.
+  /// @throws InvalidInput if that fails
+  virtual io::PendingFile& finish() = 0;
+  /// finish(), and moves the file to its place. @throws InvalidInput if that fails
+  void commit();
 };
 
 /// A file for samples by its ending: the trajectory as .csv or as .h5 .hdf5 (columns time_s, q1 … qn, x_mm, y_mm, z_mm,

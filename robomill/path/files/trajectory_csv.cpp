@@ -22,7 +22,7 @@ class Csv final : public SampleFile {
     for (const Sample& sample : samples) row(sample);
   }
 
-  void commit() override { text_.commit(); }
+  io::PendingFile& finish() override { return text_.finish(); }
 
  private:
   void begin() {

@@ -6,6 +6,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/hdf5_id.hpp"
+#include "robomill/io/hdf5_output.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {
@@ -14,44 +16,15 @@ namespace {
 constexpr hsize_t chunk = 16384;
 constexpr unsigned compression = 1;  // of 9: three times as fast as the usual 6, and hardly larger
 
-/// An HDF5 identifier that closes itself.
-class Id {
- public:
-  Id() = default;
-  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Id() { reset(); }
-  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Id& operator=(Id&& other) noexcept {
-    reset();
-    id_ = std::exchange(other.id_, -1);
-    close_ = other.close_;
-    return *this;
-  }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  [[nodiscard]] hid_t get() const { return id_; }
-  [[nodiscard]] bool good() const { return id_ >= 0; }
-  /// False where closing failed: a full disk shows then.
-  bool reset() {
-    const hid_t id = std::exchange(id_, -1);
-    return id < 0 || close_(id) >= 0;
-  }
-
- private:
-  hid_t id_ = -1;
-  herr_t (*close_)(hid_t) = nullptr;
-};
-
 struct Column {
   std::string name, unit;
-  Id set = {};
+  io::Hdf5Id set = {};
   std::vector<double> waiting = {};
 };
 
 class Hdf5 final : public SampleFile {
  public:
-  Hdf5(const std::filesystem::path& path, const TrajectoryInfo& info)
-      : path_(path), info_(info), pending_((require_regular(path), path)) {
+  Hdf5(const std::filesystem::path& path, const TrajectoryInfo& info) : path_(path), info_(info), pending_(path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are reported as ours
     begin();
   }
@@ -72,18 +45,22 @@ class Hdf5 final : public SampleFile {
 
   void state_collisions(const std::string& found) override { collisions_ = found; }
 
-  void commit() override {
+  io::PendingFile& finish() override {
     text(file_.get(), "collisions", collisions_);
     flush();
     close();
     require(file_.reset());
-    pending_.commit();
+    pending_.prepare();
+    require(io::is_whole_hdf5(pending_.temporary()));
+    return pending_;
   }
 
  private:
   std::string collisions_ = unchecked_collisions;
 
-  void require(bool good) const {
+  /// What the library says, and what the system said meanwhile.
+  void require(bool good) {
+    if (pending_.failed()) pending_.prepare();  // says why
     if (!good) throw InvalidInput(path_.string(), "cannot be written", "Is there room on the disk?");
   }
 
@@ -96,7 +73,7 @@ class Hdf5 final : public SampleFile {
     close();
     require(file_.reset());
     rows_ = 0;
-    file_ = Id(H5Fcreate(pending_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    file_ = io::Hdf5Id(io::create_hdf5(pending_), H5Fclose);
     require(file_.good());
     text(file_.get(), "program", info_.program);
     text(file_.get(), "cell", info_.cell);
@@ -111,14 +88,14 @@ class Hdf5 final : public SampleFile {
   void open(const std::string& name, const char* unit, hid_t type = H5T_IEEE_F64LE) {
     const hsize_t none = 0;
     const hsize_t unlimited = H5S_UNLIMITED;
-    const Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-    const Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const io::Hdf5Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
+    const io::Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     require(H5Pset_chunk(layout.get(), 1, &chunk) >= 0 && H5Pset_shuffle(layout.get()) >= 0 &&
             H5Pset_deflate(layout.get(), compression) >= 0 &&
             H5Pset_obj_track_times(layout.get(), false) >= 0);  // the same samples, the same bytes
     Column column{.name = name, .unit = unit};
-    column.set =
-        Id(H5Dcreate2(file_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT), H5Dclose);
+    column.set = io::Hdf5Id(
+        H5Dcreate2(file_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT), H5Dclose);
     require(column.set.good());
     column.waiting.reserve(chunk);
     text(column.set.get(), "unit", unit);
@@ -136,17 +113,18 @@ class Hdf5 final : public SampleFile {
     number(set, "max_jerk", limits.max_jerk[joint]);
   }
 
-  void number(hid_t owner, const char* name, double value) const {
-    const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-    const Id attribute(H5Acreate2(owner, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  void number(hid_t owner, const char* name, double value) {
+    const io::Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+    const io::Hdf5Id attribute(H5Acreate2(owner, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose);
     require(H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0);
   }
 
-  void text(hid_t owner, const char* name, const std::string& value) const {
-    const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-    const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  void text(hid_t owner, const char* name, const std::string& value) {
+    const io::Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+    const io::Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
     require(H5Tset_size(type.get(), value.size() + 1) >= 0 && H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0);
-    const Id attribute(H5Acreate2(owner, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const io::Hdf5Id attribute(H5Acreate2(owner, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     require(H5Awrite(attribute.get(), type.get(), value.c_str()) >= 0);
   }
 
@@ -154,10 +132,10 @@ class Hdf5 final : public SampleFile {
     const hsize_t count = columns_.front().waiting.size();
     if (count == 0) return;
     const hsize_t all = rows_ + count;
-    const Id memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const io::Hdf5Id memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
     for (Column& column : columns_) {
       require(H5Dset_extent(column.set.get(), &all) >= 0);
-      const Id space(H5Dget_space(column.set.get()), H5Sclose);
+      const io::Hdf5Id space(H5Dget_space(column.set.get()), H5Sclose);
       require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &rows_, nullptr, &count, nullptr) >= 0);
       require(H5Dwrite(column.set.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
                        column.waiting.data()) >= 0);
@@ -169,7 +147,7 @@ class Hdf5 final : public SampleFile {
   std::filesystem::path path_;
   TrajectoryInfo info_;
   io::PendingFile pending_;
-  Id file_;
+  io::Hdf5Id file_;
   std::vector<Column> columns_;
   hsize_t rows_ = 0;
 };

@@ -2,7 +2,6 @@
 // What the writers of trajectories and joint programs share.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -24,23 +23,15 @@ class PendingText {
   /// Writes the buffer out where it has grown large.
   void drain();
   void restart();
-  void commit();
+  /// As SampleFile::finish.
+  [[nodiscard]] io::PendingFile& finish();
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
   void flush();
-  void require(bool good) const;
 
-  std::filesystem::path path_;
   io::PendingFile pending_;
-  std::unique_ptr<std::FILE, Close> file_;
   fmt::memory_buffer buffer_;
 };
-
-/// @throws InvalidInput if the place holds something that is no regular file: a device or a pipe cannot appear whole
-void require_regular(const std::filesystem::path& path);
 
 [[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_csv(const std::filesystem::path& path,
                                                               const TrajectoryInfo& info);

@@ -20,12 +20,6 @@ namespace trajectory_test {
 
 using robomill::test::Folder;
 
-std::size_t files_in(const std::filesystem::path& folder) {
-  std::size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
-  return count;
-}
-
 void write(const std::filesystem::path& path, const TrajectoryInfo& info, const std::vector<Sample>& samples) {
   const auto file = open_sample_file(path, info);
   file->add(samples);
@@ -76,9 +70,27 @@ TEST_P(AnyEnding, AppearsWholeOrNotAtAll) {
     file->add(test::sines(100));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
-  EXPECT_EQ(files_in(folder.path()), 0U);
+  EXPECT_EQ(folder.count(), 0U);
   write(path, test::arm_info(), test::sines(100));
-  EXPECT_EQ(files_in(folder.path()), 1U);
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+// A full disk at any byte, and a library that writes what it holds when it is closed.
+TEST_P(AnyEnding, ThatCannotBeWrittenLeavesTheOldOne) {
+  const Folder folder;
+  const std::filesystem::path path = folder.at(std::string("t") + GetParam());
+  const auto samples = test::sines(20000);
+  write(path, test::arm_info(), samples);
+  const std::size_t size = io::read_file(path).size();
+  for (const std::size_t room : {std::size_t{0}, std::size_t{100}, size / 3, size - 1}) {
+    static_cast<void>(folder.file(path.filename().string(), "old"));
+    const robomill::test::FileSizeLimit full(room);
+    EXPECT_NE(robomill::test::rejection([&] { write(path, test::arm_info(), samples); }).find("cannot be written"),
+              std::string::npos)
+        << room;
+    EXPECT_EQ(io::read_file(path), "old");
+  }
+  EXPECT_EQ(folder.count(), 1U);
 }
 
 TEST_P(AnyEnding, BegunAnewIsAsIfForTheFirstTime) {
@@ -192,7 +204,7 @@ TEST(Trajectory, RejectsWhatItCannotWrite) {
   EXPECT_NE(open(folder.at("t.step"), info).find(".csv"), std::string::npos);
   EXPECT_NE(open(folder.at("none/t.csv"), info).find("There is no folder"), std::string::npos);
   std::filesystem::create_symlink("/dev/null", folder.at("device.csv"));
-  EXPECT_NE(open(folder.at("device.csv"), info).find("regular file"), std::string::npos);
+  EXPECT_NE(open(folder.at("device.csv"), info).find("is a device or a pipe"), std::string::npos);
   TrajectoryInfo none = info;
   none.joints = 0;
   EXPECT_NE(open(folder.at("t.csv"), none).find("joints"), std::string::npos);
@@ -202,7 +214,7 @@ TEST(Trajectory, RejectsWhatItCannotWrite) {
   TrajectoryInfo points = info;
   points.program_period_s = 0.02;
   EXPECT_NE(open(folder.at("t.h5"), points).find("program_period_s"), std::string::npos);
-  EXPECT_EQ(files_in(folder.path()), 1U);
+  EXPECT_EQ(folder.count(), 1U);
 }
 
 }  // namespace trajectory_test

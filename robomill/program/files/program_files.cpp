@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
@@ -185,11 +187,22 @@ std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, con
 
 namespace {
 
+/// Of blocks in memory, while they are moved to where there is room for more: arcs make many of one line.
+void require_affordable_program(std::size_t blocks) {
+  const auto all = static_cast<double>(blocks);
+  require_affordable({.bytes = 2.0 * all * sizeof(Block),
+                      .dominant = {.field = "the program", .value = all, .unit = "blocks and more"}});
+}
+
 Program whole(Walk& walk) {
   Program out;
   out.start = walk.start();
   Block block;
-  while (walk.next(block)) out.blocks.push_back(block);
+  while (walk.next(block)) {
+    constexpr std::size_t between_looks = 65'536;
+    if (out.blocks.size() % between_looks == between_looks - 1) require_affordable_program(out.blocks.size());
+    out.blocks.push_back(block);
+  }
   out.skipped = std::move(walk.remarks().skipped());
   out.notes = walk.remarks().notes();
   out.assumed = walk.remarks().assumed();

@@ -43,7 +43,7 @@ void ProgramLines::fill() {
   begin_ = 0;
   in_->read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
   end_ += static_cast<std::size_t>(in_->gcount());
-  if (in_->bad()) throw InvalidInput(name_, "cannot be read to its end");
+  if (in_->bad()) throw InvalidInput(InvalidInput::Parts{.where = name_, .rule = "cannot be read to its end"});
   whole_ = !*in_;
   if (first && std::string_view(buffer_.data(), end_).starts_with("\xEF\xBB\xBF")) begin_ = 3;
 }
@@ -77,7 +77,8 @@ char ProgramLines::ahead() const {
 void ProgramLines::rewind() {
   in_->clear();
   if (!in_->seekg(0)) {
-    throw InvalidInput(name_, "cannot be read a second time", "It is read twice; is it a pipe? Give a file");
+    throw InvalidInput(InvalidInput::Parts{
+        .where = name_, .rule = "cannot be read a second time", .hint = "It is read twice; is it a pipe? Give a file"});
   }
   begin_ = end_ = line_ = 0;
   whole_ = false;

@@ -24,6 +24,15 @@ bool hidden(const fs::path& name) {
 
 }  // namespace
 
+void require_folder(const fs::path& root) {
+  std::error_code error;
+  const fs::directory_iterator content(root, error);
+  if (!error) return;
+  const bool gone = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  throw InvalidInput("folder", gone ? "the folder that is served is gone" : "the folder that is served cannot be read",
+                     "Put it back and start robomill serve anew");
+}
+
 Folder::Folder(const fs::path& root) {
   std::error_code error;
   root_ = fs::canonical(root, error);

@@ -21,6 +21,10 @@ struct FolderFile {
   bool operator==(const FolderFile&) const = default;
 };
 
+/// Before anything is read or written below it, which would be made anew.
+/// @throws InvalidInput if the folder that is served was taken away or cannot be read
+void require_folder(const std::filesystem::path& root);
+
 /// The folder that is served. Nothing outside it is read or written, nor what has a name with a dot in front.
 class Folder {
  public:

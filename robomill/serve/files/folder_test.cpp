@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
 #include "robomill/io/mat.hpp"
+#include "robomill/serve/files/named_files.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::serve {
@@ -80,6 +82,26 @@ TEST(Folder, SeesChangesWithinASecond) {
   const std::vector<FolderFile> second = folder.list(left_out);
   EXPECT_EQ(second.front().what.kind, "fit");
   EXPECT_NE(first, second);
+}
+
+TEST(NamedFiles, AreNotReadWithoutBound) {
+  const test::Folder place;
+  std::string names;
+  for (int i = 0; i < 70; ++i) {
+    const std::string name = fmt::format("d{}.toml", i);
+    place.file(name, "a = 1\n");
+    names += fmt::format("\"{}\", ", name);
+    if (i != 50) continue;
+    EXPECT_EQ(files_named_in(place.file("few.toml", "a = [" + names + "]\n")).size(), 51U);
+  }
+  EXPECT_THROW(static_cast<void>(files_named_in(place.file("many.toml", "a = [" + names + "]\n"))), InvalidInput);
+  const std::string long_one = "# " + std::string(1'000'000, '-') + "\n";
+  std::string long_names;
+  for (int i = 0; i < 10; ++i) {
+    place.file(fmt::format("l{}.toml", i), long_one);
+    long_names += fmt::format("\"l{}.toml\", ", i);
+  }
+  EXPECT_THROW(static_cast<void>(files_named_in(place.file("long.toml", "a = [" + long_names + "]\n"))), InvalidInput);
 }
 
 TEST(FileKindTest, FrfsWithoutAHeaderAreNoRecords) {

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <complex>
-#include <cstdint>
 #include <fstream>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -191,20 +189,11 @@ std::string kind_of_table(const Beginning& file) {
   }
 }
 
-/// FRFs have a name of their own there. A long file is a record: to look at it would take longer than a list may.
+/// FRFs have a name of their own there. A long file is a record: to look at it would take longer than a list may, as
+/// would the libraries of a damaged one.
 std::string kind_of_mat(const std::filesystem::path& path) {
-  constexpr std::uintmax_t longest_bytes = std::uintmax_t{1} << 20;
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  if (error || bytes > longest_bytes) return "record";
-  try {
-    const std::vector<io::MatVariable> variables = io::read_mat(path);
-    const bool frfs =
-        std::ranges::any_of(variables, [](const io::MatVariable& one) { return one.name == "frequency_hz"; });
-    return frfs ? "frf" : "record";
-  } catch (const InvalidInput&) {
-    return "record";
-  }
+  constexpr std::size_t longest_bytes = std::size_t{1} << 20;
+  return io::mat_seems_to_have(path, "frequency_hz", longest_bytes) ? "frf" : "record";
 }
 
 FileKind kind_of_text(const Beginning& file) {

@@ -8,6 +8,7 @@ namespace robomill::serve {
 
 /// The files that a TOML document names, and those that the documents among them name: every text of it that leads from
 /// its folder to a file that is there. None of a file that is no such document.
+/// @throws InvalidInput if they are too many: 64 documents, 8 MB of them, or 10,000 files
 [[nodiscard]] std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& document);
 
 }  // namespace robomill::serve

@@ -19,12 +19,21 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <deque>
+#include <exception>
 #include <limits>
+#include <memory>
+#include <new>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/serve/http/places.hpp"
 #include "robomill/serve/http/target.hpp"
 
 namespace robomill::serve {
@@ -40,6 +49,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr double write_s = 10.0;                                 ///< for a response, at a megabyte a second more
 constexpr double bytes_per_s = 1e6;                              ///< that a client must take or give at least
 constexpr double linger_s = 1.0;                                 ///< for a client to read its last response
+constexpr double proof_s = 1.0;                                  ///< for a header where places are few
 constexpr double heartbeat_s = 15.0;                             ///< of a stream
 constexpr std::size_t most_rejected = 256;                       ///< connections, at a time
 constexpr std::size_t most_queued_bytes = std::size_t{4} << 20;  ///< of a stream
@@ -56,16 +66,35 @@ HttpResponse failure(int status, std::string_view text) {
                               text)};
 }
 
+HttpResponse too_many_connections() {
+  HttpResponse response = failure(503, "too many connections; try later");
+  response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
+
 /// To a connection that is rejected.
 const std::string& busy() {
   static const std::string response = [] {
-    const std::string body = failure(503, "too many connections; try later").body;
+    const std::string body = too_many_connections().body;
     return fmt::format(
         "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nContent-Length: {}\r\n"
         "Retry-After: 1\r\nConnection: close\r\n\r\n{}",
         body.size(), body);
   }();
   return response;
+}
+
+/// The client that a connection comes from: a whole /64 of IPv6 addresses is one client's.
+std::string client_of(const Tcp::socket& socket) {
+  error_code error;
+  const asio::ip::address address = socket.remote_endpoint(error).address();
+  if (error) return {};
+  if (!address.is_v6()) return address.to_string();
+  const asio::ip::address_v6 six = address.to_v6();
+  if (six.is_v4_mapped()) return asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string();
+  asio::ip::address_v6::bytes_type bytes = six.to_bytes();
+  std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
+  return asio::ip::address_v6(bytes).to_string();
 }
 
 using Parser = http::request_parser<http::string_body>;
@@ -97,14 +126,18 @@ class Connection;
 
 /// What accepts and owns the connections.
 struct Listener : std::enable_shared_from_this<Listener> {
+  explicit Listener(HttpServer::Options wanted) : options(std::move(wanted)) {}
+
   HttpServer::Options options;
   HttpServer::Handlers handlers;
+  Places places{options.connections};
   std::size_t rejected = 0;  ///< connections; these are gone last
   asio::io_context io{1};
   Tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};
   std::set<std::shared_ptr<Connection>> connections, streams;  ///< of the io thread alone
   std::size_t large_bodies = 0;
+  bool accepts = false;  ///< or waits to do so
   std::atomic<std::size_t> open{0};
   std::jthread thread;
 
@@ -120,16 +153,27 @@ struct Listener : std::enable_shared_from_this<Listener> {
 /// A client: request, response, and again; or a stream of events. All of it on the server's thread.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Tcp::socket socket, Listener& server) : stream_(std::move(socket)), server_(server) {}
+  /// @param client, place  for server.places
+  Connection(Tcp::socket socket, Listener& server, std::string client, Places::Place place)
+      : stream_(std::move(socket)), server_(server), client_(std::move(client)), place_(place) {}
 
+  void begin() {
+    guarded([this] { read_header(); });
+  }
   void read_header() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(server_.options.header_bytes));
     parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // until the header says what it is for
-    stream_.expires_after(after(server_.options.header_s));
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      self->guarded([&] { self->header_read(error); });
-    });
+    if (buffer_.size() > 0) return read_rest_of_header();            // came with the request before
+    stream_.expires_after(after(header_s()));
+    stream_.async_read_some(buffer_.prepare(first_bytes),
+                            [self = shared_from_this()](error_code error, std::size_t count) {
+                              if (error) return self->close();
+                              self->guarded([&] {
+                                self->buffer_.commit(count);
+                                self->read_rest_of_header();
+                              });
+                            });
   }
   void close() {
     error_code ignored;
@@ -138,13 +182,40 @@ class Connection : public std::enable_shared_from_this<Connection> {
     leave();
   }
   void send_event(const std::shared_ptr<const std::string>& text) {
-    queued_bytes_ += text->size();
-    if (queued_bytes_ > most_queued_bytes) return close();
-    queue_.push_back(text);
-    if (queue_.size() == 1) write_event();
+    guarded([&] {
+      queued_bytes_ += text->size();
+      if (queued_bytes_ > most_queued_bytes) return close();
+      queue_.push_back(text);
+      if (queue_.size() == 1) write_event();
+    });
   }
 
  private:
+  /// One response, from any thread. All that it needs but a few bytes was there before: without memory it is given
+  /// later, since the connection waits for it without a limit of time.
+  struct Answer {
+    Answer(std::weak_ptr<Connection> asking, std::weak_ptr<Listener> of)
+        : connection(std::move(asking)), server(std::move(of)) {}
+    void give(const std::shared_ptr<Answer>& self, HttpResponse&& given) {
+      const std::shared_ptr<Listener> there = server.lock();
+      if (!there || is_given.exchange(true)) return;
+      response = std::move(given);
+      for (;;) {
+        try {
+          return asio::post(there->io, [self] {
+            const std::shared_ptr<Connection> there_still = self->connection.lock();
+            if (there_still) there_still->guarded([&] { there_still->respond(std::move(self->response)); });
+          });
+        } catch (const std::bad_alloc&) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+      }
+    }
+    std::weak_ptr<Connection> connection;
+    std::weak_ptr<Listener> server;
+    std::atomic<bool> is_given{false};
+    HttpResponse response = {};
+  };
   /// Without memory, say, one client loses its connection, and no other.
   template <class Step>
   void guarded(const Step& step) {
@@ -153,6 +224,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
     } catch (const std::exception&) {
       close();
     }
+  }
+  static constexpr std::size_t first_bytes = 4096;
+  [[nodiscard]] double header_s() const {
+    return place_ == Places::Place::reserved ? proof_s : server_.options.header_s;
+  }
+  void read_rest_of_header() {
+    stream_.expires_after(after(header_s()));
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      self->guarded([&] { self->header_read(error); });
+    });
   }
   void header_read(error_code error) {
     if (error == http::error::header_limit || error == http::error::buffer_overflow) {
@@ -168,6 +249,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return respond_and_close(failure(400, "this request cannot be understood"));
     }
     request_ = std::move(*request);
+    if (place_ == Places::Place::reserved && !is_known()) return respond_and_close(too_many_connections());
     const auto admitted = admit();
     if (const auto* answer = std::get_if<HttpResponse>(&admitted)) return respond_and_close(*answer);
     const std::uint64_t most = std::get<std::uint64_t>(admitted);
@@ -192,6 +274,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return failure(500, "an error in the server");
     }
   }
+  [[nodiscard]] bool is_known() const { return server_.handlers.knows && server_.handlers.knows(request_); }
   void body_read(error_code error) {
     if (error == http::error::body_limit) return respond_and_close(failure(413, "the body is too long"));
     if (error) return close();
@@ -199,15 +282,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     request_.body = std::move(parser_->get().body());
     parser_.reset();
     stream_.expires_never();
-    auto once = std::make_shared<std::atomic<bool>>(false);
-    Reply reply = [self = weak_from_this(), server = server_.weak_from_this(), once](HttpResponse response) {
-      const std::shared_ptr<Listener> there = server.lock();
-      if (!there || once->exchange(true)) return;
-      asio::post(there->io, [self, response = std::move(response)]() mutable {
-        const std::shared_ptr<Connection> connection = self.lock();
-        if (connection) connection->guarded([&] { connection->respond(std::move(response)); });
-      });
-    };
+    const Reply reply = [answer = std::make_shared<Answer>(weak_from_this(), server_.weak_from_this())](
+                            HttpResponse response) { answer->give(answer, std::move(response)); };
     try {
       server_.handlers.handle(std::move(request_), reply);
     } catch (const std::exception&) {
@@ -232,8 +308,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     asio::async_write(stream_, parts, [self = shared_from_this()](error_code error, std::size_t) {
       self->response_ = {};
       if (error) return self->close();
-      if (self->keep_) return self->read_header();
-      self->linger();
+      self->guarded([&] { self->keep_ ? self->read_header() : self->linger(); });
     });
   }
   std::string head_of(int status, const std::string& type) const {
@@ -254,7 +329,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void discard() {
     stream_.async_read_some(asio::buffer(waste_), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->close();
-      self->discard();
+      self->guarded([&] { self->discard(); });
     });
   }
   void begin_events() {
@@ -263,6 +338,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     send_event(std::make_shared<const std::string>(head_of(200, "text/event-stream") +
                                                    "Connection: close\r\n\r\nretry: 1000\n\n"));
+    if (!stream_.socket().is_open()) return;
     server_.streams.insert(shared_from_this());
     read_nothing();
     beat();
@@ -271,7 +347,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read_nothing() {
     stream_.socket().async_read_some(asio::buffer(waste_), [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->close();
-      self->read_nothing();
+      self->guarded([&] { self->read_nothing(); });
     });
   }
   void beat() {
@@ -279,9 +355,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
     heart_.async_wait([self = weak_from_this()](error_code error) {
       const std::shared_ptr<Connection> connection = self.lock();
       if (error || !connection || !connection->stream_.socket().is_open()) return;
-      static const auto pulse = std::make_shared<const std::string>(":\n\n");
-      connection->send_event(pulse);
-      connection->beat();
+      connection->guarded([&] {
+        static const auto pulse = std::make_shared<const std::string>(":\n\n");
+        connection->send_event(pulse);
+        connection->beat();
+      });
     });
   }
   void write_event() {
@@ -295,7 +373,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                         if (error) return self->close();
                         self->queued_bytes_ -= self->queue_.front()->size();
                         self->queue_.pop_front();
-                        if (!self->queue_.empty()) self->write_event();
+                        if (!self->queue_.empty()) self->guarded([&] { self->write_event(); });
                       });
   }
   void free_large_body() {
@@ -307,11 +385,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     heart_.cancel();
     limit_.cancel();
     server_.streams.erase(shared_from_this());
-    if (server_.connections.erase(shared_from_this()) > 0) --server_.open;
+    if (server_.connections.erase(shared_from_this()) == 0) return;
+    --server_.open;
+    server_.places.leave(client_, place_);
   }
 
   beast::tcp_stream stream_;
   Listener& server_;
+  std::string client_;
+  Places::Place place_;
   beast::flat_buffer buffer_{std::size_t{1} << 16};
   std::optional<Parser> parser_;
   HttpRequest request_;
@@ -359,7 +441,13 @@ class RejectedConnection : public std::enable_shared_from_this<RejectedConnectio
 void Listener::listen() {
   error_code error;
   const asio::ip::address address = asio::ip::make_address(options.host, error);
-  if (error) throw InvalidInput("host", "must be an address of this machine, as 127.0.0.1", options.host);
+  if (error) {
+    throw InvalidInput(
+        InvalidInput::Parts{.field = "host",
+                            .value = options.host,
+                            .rule = "must be an address of this machine, as 127.0.0.1, or localhost",
+                            .hint = "Names are not looked up: give the address that this one stands for"});
+  }
   const Tcp::endpoint endpoint(address, static_cast<std::uint16_t>(options.port));
   const auto step = [&](const char* what) {
     if (!error) return;
@@ -377,12 +465,15 @@ void Listener::listen() {
 
 void Listener::accept() {
   acceptor.async_accept([this](error_code error, Tcp::socket socket) {
+    accepts = false;
     if (error == asio::error::operation_aborted || !acceptor.is_open()) return;
     if (error) {  // no descriptor left, for one: wait until connections end
       pause.expires_after(after(0.05));
       pause.async_wait([this](error_code ended) {
+        accepts = false;
         if (!ended) accept();
       });
+      accepts = true;
       return;
     }
     try {
@@ -392,16 +483,25 @@ void Listener::accept() {
     }
     accept();
   });
+  accepts = true;
 }
 
 void Listener::take(Tcp::socket socket) {
-  if (connections.size() >= options.connections) return reject(std::move(socket));
+  const std::string client = client_of(socket);
+  const Places::Place place = places.take(client);
+  if (place == Places::Place::none) return reject(std::move(socket));
   error_code ignored;
   socket.set_option(Tcp::no_delay(true), ignored);
-  const auto connection = std::make_shared<Connection>(std::move(socket), *this);
-  connections.insert(connection);
+  std::shared_ptr<Connection> connection;
+  try {
+    connection = std::make_shared<Connection>(std::move(socket), *this, client, place);
+    connections.insert(connection);
+  } catch (const std::exception&) {
+    places.leave(client, place);
+    throw;
+  }
   ++open;
-  connection->read_header();
+  connection->begin();
 }
 
 /// 503, and a second to read it; beyond most_rejected the connection is only closed.
@@ -413,12 +513,15 @@ void Listener::reject(Tcp::socket socket) {
 
 /// Until it is stopped, whatever a step of a connection throws.
 void Listener::run() {
+  constexpr std::chrono::milliseconds pause_without_memory(50);
   for (;;) {
     try {
+      if (!accepts && acceptor.is_open()) accept();
       io.run();
       return;
     } catch (const std::exception&) {
       // No memory for one step, say: the others go on.
+      std::this_thread::sleep_for(pause_without_memory);
     }
   }
 }
@@ -437,8 +540,7 @@ void Listener::stop() {
   io.stop();
 }
 
-HttpServer::HttpServer(Options options) : listener_(std::make_shared<Listener>()) {
-  listener_->options = std::move(options);
+HttpServer::HttpServer(Options options) : listener_(std::make_shared<Listener>(std::move(options))) {
   listener_->listen();
 }
 

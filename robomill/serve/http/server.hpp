@@ -42,11 +42,13 @@ struct Listener;
 class HttpServer {
  public:
   struct Options {
-    std::string host = "127.0.0.1";          ///< an address, not a name
-    int port = 0;                            ///< 0: any that is free
-    std::size_t connections = 128;           ///< at a time, event streams included; the rest is answered with 503
+    std::string host = "127.0.0.1";  ///< an address, not a name
+    int port = 0;                    ///< 0: any that is free
+    /// At a time, event streams included; the rest is answered with 503. Of one address three quarters; the last eighth
+    /// is for clients that are known.
+    std::size_t connections = 128;
     std::size_t streams = 32;                ///< of events, at a time
-    double header_s = 5.0;                   ///< from a connection's beginning or last response to the end of a header
+    double header_s = 5.0;                   ///< from a header's first byte to its end, and before that without a byte
     std::size_t header_bytes = 16384;        ///< longest header, longest target
     std::size_t large_body_bytes = 1 << 20;  ///< bodies that may be longer are read two at a time
     std::vector<std::pair<std::string, std::string>> headers = {};  ///< of every response
@@ -56,6 +58,8 @@ class HttpServer {
     std::function<std::variant<std::uint64_t, HttpResponse>(const HttpRequest&)> admit;
     /// After the body. On the server's thread: what takes longer than a millisecond goes elsewhere and replies later.
     std::function<void(HttpRequest, Reply)> handle;
+    /// After the header of one that came where places are few: whether its client may ask. None: nobody is known.
+    std::function<bool(const HttpRequest&)> knows = {};
   };
 
   /// Listens. @throws InvalidInput if it cannot there

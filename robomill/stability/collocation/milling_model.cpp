@@ -12,20 +12,6 @@ namespace {
 
 using Form = MeshTopology::Form;
 
-/// How many periods of the cutter make a whole number of swings.
-int common_repeats(const cutting::SpeedVariation& variation, double period_rad) {
-  if (!variation.active()) return 1;
-  constexpr int most = 256;
-  const double swings = variation.frequency_ratio * period_rad / units::revolution;  // in a period of the cutter
-  for (int repeats = 1; repeats <= most; ++repeats) {
-    const double count = swings * repeats;
-    if (std::round(count) >= 1.0 && std::abs(count - std::round(count)) < 1e-9 * count) return repeats;
-  }
-  throw InvalidInput("frequency_ratio", variation.frequency_ratio, "",
-                     "does not fit the rotation: no whole number of swings in 256 periods of the cut",
-                     "Take a simple ratio, such as 0.1, 0.25 or 0.5");
-}
-
 /// Compliance added at each node.
 Eigen::MatrixXd whole_response(const PiecePlan& plan, const Eigen::Matrix2d& compliance) {
   Eigen::MatrixXd response = plan.response;
@@ -83,6 +69,19 @@ void reduce_several(const CutMesh::Piece& mesh, const PiecePlan& plan, const Eig
 }
 
 }  // namespace
+
+int common_repeats(const cutting::SpeedVariation& variation, double period_rad) {
+  if (!variation.active()) return 1;
+  constexpr int most = 256;
+  const double swings = variation.frequency_ratio * period_rad / units::revolution;  // in a period of the cutter
+  for (int repeats = 1; repeats <= most; ++repeats) {
+    const double count = swings * repeats;
+    if (std::round(count) >= 1.0 && std::abs(count - std::round(count)) < 1e-9 * count) return repeats;
+  }
+  throw InvalidInput("frequency_ratio", variation.frequency_ratio, "",
+                     "does not fit the rotation: no whole number of swings in 256 periods of the cut",
+                     "Take a simple ratio, such as 0.1, 0.25 or 0.5");
+}
 
 MillingModel::MillingModel(const LobesProblem& problem, MeshTopology::Form least_form)
     : tip(tip_dynamics(problem)),

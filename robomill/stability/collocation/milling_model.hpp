@@ -3,6 +3,10 @@
 
 namespace robomill::stability::detail {
 
+/// How many periods of the cutter make a whole number of swings.
+/// @throws InvalidInput if more than 256 would
+[[nodiscard]] int common_repeats(const cutting::SpeedVariation& variation, double period_rad);
+
 /// A cylindrical cutter in the plane.
 class MillingModel final : public CollocationModel {
  public:

@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/frequency_domain.hpp"
 #include "robomill/stability/frequency_domain/contact_basis.hpp"
 #include "robomill/stability/frequency_domain/crossings.hpp"
@@ -99,7 +100,7 @@ std::vector<FrequencyLimit> zeroth_order_limits(const cutting::Milling& milling,
                                                 const FrequencyOptions& options, Progress& progress) {
   require_frequency_domain(milling);
   options.validate();
-  for (const double speed : spindle_speeds_rad_per_s) require_positive("spindle_speed_rad_per_s", speed, "rad/s");
+  for (const double speed : spindle_speeds_rad_per_s) cutting::require_spindle_speed("spindle_speed_rad_per_s", speed);
   std::vector<FrequencyLimit> limits(spindle_speeds_rad_per_s.size());
   if (response.resonances().empty()) return limits;
   progress.start("zeroth-order limits", limits.size());

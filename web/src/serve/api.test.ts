@@ -41,7 +41,7 @@ describe('what is sent', () => {
     await api.cancel(3);
     await api.write('a.toml', 'x', '"a"');
     expect(sent.map(({ path, options }) => `${options.method} ${path}`)).toEqual(['GET /api/state', 'POST /api/jobs', 'DELETE /api/jobs/3', 'PUT /api/file?path=a.toml']);
-    expect(sent.map((one) => headers(one)['X-Robomill-Token'])).toEqual([undefined, 'secret', 'secret', 'secret']);
+    expect(sent.map((one) => headers(one)['X-Robomill-Token'])).toEqual(['secret', 'secret', 'secret', 'secret']);
     expect(JSON.parse(sent[1]!.options.body as string)).toEqual({ verb: 'plan', input: 'job.toml', output: 'out', options: { seed: 3 } });
   });
   it('says which state of a file it was made from', async () => {

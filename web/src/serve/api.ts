@@ -53,7 +53,8 @@ export type Api = ReturnType<typeof openApi>;
 
 export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: string, options: RequestInit) => Promise<Response> = (path, options) => fetch(path, options)) {
   async function ask(method: string, path: string, options: RequestInit = {}): Promise<Response> {
-    const headers = { ...(method === 'GET' ? {} : { 'X-Robomill-Token': token }), ...(options.headers as Record<string, string> | undefined) };
+    // Of GET too: where connections are few the server answers those of its page.
+    const headers = { 'X-Robomill-Token': token, ...(options.headers as Record<string, string> | undefined) };
     let response: Response;
     try {
       response = await send(path, { ...options, method, headers, cache: 'no-store', credentials: 'same-origin' });

@@ -305,11 +305,11 @@ class JointProgram final : public SampleFile {
 
   void state_collisions(const std::string& found) override { collisions_ = found; }
 
-  void commit() override {
+  io::PendingFile& finish() override {
     if (points_.at.empty()) place_points(stride_);
     write_header();
     write_points();
-    text_.commit();
+    return text_.finish();
   }
 
  private:

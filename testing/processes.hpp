@@ -71,6 +71,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   [[nodiscard]] bool started() const { return pid_ > 0; }
+  [[nodiscard]] pid_t pid() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
   /// The exit code; 128 and the signal where one ended it.
   int wait() {

@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+
+#include "robomill/base/units.hpp"
+
+namespace robomill::cutting {
+
+/// No spindle cuts more slowly, none turns faster.
+inline constexpr double slowest_spindle_rad_per_s = units::rpm, fastest_spindle_rad_per_s = 1e6 * units::rpm;
+/// @throws InvalidInput unless it lies between them
+void require_spindle_speed(const std::string& field, double spindle_speed_rad_per_s);
+
+/// @throws InvalidInput unless in [0, 10 mm]
+void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m);
+
+}  // namespace robomill::cutting
