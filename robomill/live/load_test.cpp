@@ -114,7 +114,10 @@ TEST(Load, EndsWhereTheQueueNeverEmpties) {
   Load load(true, 0.3);
   double now_s = 0.0, stream_s = 0.0;
   const auto take = [&] {
-    load.take({.samples = {}, .arrived = at(now_s)}, stream_s += 25e-3, false, at(now_s += 1e-3));
+    const double arrived_s = now_s;
+    now_s += 1e-3;
+    stream_s += 25e-3;
+    load.take({.samples = {}, .arrived = at(arrived_s)}, stream_s, false, at(now_s));
   };
   for (int i = 0; i < 100; ++i) take();
   EXPECT_FALSE(load.overloaded());

@@ -76,7 +76,7 @@ HttpResponse MonitorService::forward(const HttpRequest& request) {
 
 HttpResponse MonitorService::list() {
   if (process_) {
-    const HttpResponse listed = forward({.method = "GET", .path = std::string(all_path), .query = {}, .headers = {}});
+    HttpResponse listed = forward({.method = "GET", .path = std::string(all_path), .query = {}, .headers = {}});
     if (listed.status != 200) return listed;
     known_ = io::Json::parse(listed.body);
     for (const io::Json& spindle : known_) last_id_ = std::max(last_id_, id_of(spindle));
