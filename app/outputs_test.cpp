@@ -6,6 +6,7 @@
 #include <string>
 
 #include "test_program.hpp"
+#include "testing/jobs/lobes_file.hpp"
 
 namespace robomill::app {
 namespace outputs_test {
@@ -33,10 +34,8 @@ class Outputs : public ProgramTest {
     fs::create_hard_link(folder_.at("example_hit_x.csv"), folder_.at("hard.csv"));
   }
   void write_lobes_of_modes() {
-    write("of_modes.toml",
-          "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\nfeed_per_tooth_mm = "
-          "0.01\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n[dynamics]\nmodes = "
-          "\"modes.json\"\n[lobes]\nspindle_speed_rpm = [6000, 9000]\naxial_depth_mm = [0, 3]\ngrid = [20, 10]\n");
+    write("of_modes.toml", test_support::lobes_file("spindle_speed_rpm = [6000, 9000]\naxial_depth_mm = [0, 3]\n"
+                                                    "grid = [20, 10]\n[dynamics]\nmodes = \"modes.json\"\n"));
   }
 };
 

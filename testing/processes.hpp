@@ -2,7 +2,6 @@
 // For tests: programs that run beside the test, a broker among them.
 #include <arpa/inet.h>
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <spawn.h>
 #include <sys/socket.h>
@@ -15,6 +14,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -127,7 +127,7 @@ class Mosquitto {
       port_ = free_port();
       start();
     }
-    EXPECT_NE(process_, nullptr) << "is mosquitto installed? " << slurp(folder_ / "mosquitto.err");
+    if (process_ == nullptr) throw std::runtime_error("is mosquitto installed? " + slurp(folder_ / "mosquitto.err"));
   }
 
   void start() {

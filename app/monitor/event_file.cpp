@@ -12,6 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/io/descriptor.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/version.hpp"
 
@@ -75,7 +76,7 @@ void EventFile::note() {
       const std::string lost = state.lost > 0 ? fmt::format("; {} were lost", state.lost) : "";
       news.emplace_back(unsaved ? "events-not-saved" : "events-saved",
                         unsaved ? fmt::format("{}: events cannot be saved: {}; the monitor goes on, and they wait",
-                                              path, io::AppendLog::reason(state.error))
+                                              path, io::error_text(state.error))
                                 : fmt::format("{}: events are saved again, those that waited too{}", path, lost));
     }
   }
@@ -108,7 +109,7 @@ bool EventFile::print(const std::string& line) {
   std::clearerr(stdout);
   cut_ = true;
   if (unprinted_++ == 0 && options_.is_stream) {
-    say("standard output takes no events: " + io::AppendLog::reason(error) + "; the monitor goes on without them");
+    say("standard output takes no events: " + io::error_text(error) + "; the monitor goes on without them");
   }
   return options_.is_stream;
 }
@@ -151,7 +152,7 @@ void EventFile::require_saved() {
   if (state.waiting == 0 && state.error == 0) return;
   const std::string rule = state.waiting > 0 ? fmt::format("{} events could not be saved", state.waiting)
                                              : std::string("may lack events after a power cut");
-  throw InvalidInput(log_->path().string(), rule, io::AppendLog::reason(state.error) + ". Is the disk full?");
+  throw InvalidInput(log_->path().string(), rule, io::error_text(state.error) + ". Is the disk full?");
 }
 
 }  // namespace robomill::app

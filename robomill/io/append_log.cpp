@@ -13,6 +13,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
+#include "robomill/io/descriptor.hpp"
+#include "robomill/io/file.hpp"
 
 namespace robomill::io {
 
@@ -27,16 +29,15 @@ void AppendLog::open() {
     throw InvalidInput(path_.string(), rule, hint);
   };
   std::error_code ignored;
-  const std::filesystem::file_status there = std::filesystem::status(path_, ignored);
-  const bool special = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
-  if (std::filesystem::is_directory(there)) fail("is a folder, not a file", {});
+  const bool special = is_special(path_);
+  if (std::filesystem::is_directory(path_, ignored)) fail("is a folder, not a file", {});
   if (special && is_confined()) fail("is a device or a pipe, not a file", {});
   const char* rule = "cannot be written";
   const int error = open_file(special ? O_WRONLY : O_RDWR | O_CREAT, rule);
   if (error != 0) {
     const std::filesystem::path folder = path_.parent_path();
     const bool lacks_folder = !folder.empty() && !std::filesystem::is_directory(folder, ignored);
-    fail(rule, lacks_folder ? "There is no folder " + folder.string() : reason(error));
+    fail(rule, lacks_folder ? "There is no folder " + folder.string() : error_text(error));
   }
   was_unfinished_ = unfinished_;
 }
@@ -74,10 +75,6 @@ int AppendLog::follow() {
   const int error = open_file(O_RDWR | O_CREAT, rule);
   if (error == 0) ++moved_;
   return error;
-}
-
-std::string AppendLog::reason(int error) {
-  return std::generic_category().message(error);
 }
 
 AppendLog::State AppendLog::write(std::string line, bool minor) {

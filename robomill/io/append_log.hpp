@@ -49,8 +49,6 @@ class AppendLog {
   [[nodiscard]] State state() const;
   /// Those that wait once more; then all is made durable, and nothing can be written any more.
   State close();
-  /// What is said of an error: "No space left on device".
-  [[nodiscard]] static std::string reason(int error);
   /// Whether the file's last line was not finished when it was opened.
   [[nodiscard]] bool was_unfinished() const { return was_unfinished_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

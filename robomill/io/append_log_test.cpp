@@ -230,7 +230,7 @@ TEST(AppendLog, WritesDevicesAndPipesThrough) {
   AppendLog full("/dev/full", {});
   const AppendLog::State state = full.write("lost\n");
   EXPECT_EQ(state.error, ENOSPC);
-  EXPECT_EQ(AppendLog::reason(state.error), "No space left on device");
+  EXPECT_EQ(error_text(state.error), "No space left on device");
   EXPECT_EQ(state.waiting, 1U);
   AppendLog nothing("/dev/null", {});
   EXPECT_EQ(nothing.write("gone\n").error, 0);

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -42,8 +42,12 @@ bool cannot_be_synchronised(int error) noexcept {
 
 }  // namespace
 
+std::string error_text(int error) {
+  return std::generic_category().message(error);
+}
+
 void require_success(const std::filesystem::path& path, int error) {
-  if (error != 0) throw InvalidInput(path.string(), "cannot be written", std::strerror(error));
+  if (error != 0) throw InvalidInput(path.string(), "cannot be written", error_text(error));
 }
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : open_(std::exchange(other.open_, -1)) {}

@@ -3,12 +3,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 /// The system's calls on files, each finished (short counts, EINTR) and checked. They return 0 or errno, so that
 /// callbacks of libraries and signal-safe code can use them.
 namespace robomill::io {
 
+/// What the system calls an errno, "No space left on device".
+[[nodiscard]] std::string error_text(int error);
 /// Unless the error is 0. @throws InvalidInput that the file cannot be written, with the system's reason
 void require_success(const std::filesystem::path& path, int error);
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
-#include <cstring>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -39,7 +38,7 @@ class Marker {
       out.file_ = open_descriptor(out.path_.c_str(), flags | O_NOFOLLOW | O_NONBLOCK, error);
       if ((flags & O_CREAT) == 0) {
         if (error == ENOENT || error == ENOTDIR) return std::nullopt;
-        if (error != 0) throw InvalidInput(out.path_.string(), "cannot be read", std::strerror(error));
+        if (error != 0) throw InvalidInput(out.path_.string(), "cannot be read", error_text(error));
       }
       require_success(out.path_, error);
       while (::flock(out.file_.get(), lock) != 0) {

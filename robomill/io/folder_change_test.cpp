@@ -121,14 +121,14 @@ TEST(FolderChange, TakesNothingElseAwayForAMarker) {
 TEST(FolderChange, GoesBehindLinks) {
   const Folder folder;
   fs::create_directories(folder.at("out"));
-  fs::create_directories(folder.at("shared"));
-  fs::create_symlink("../shared/m.json", folder.at("out/modes.json"));
+  fs::create_directories(folder.at("other"));
+  fs::create_symlink("../other/m.json", folder.at("out/modes.json"));
   for (const char* content : {"1", "2"}) {  // the first time it leads to nothing
     FolderChange change(folder.at("out"));
     change.write("modes.json", content);
     change.commit();
     EXPECT_TRUE(fs::is_symlink(folder.at("out/modes.json")));
-    EXPECT_EQ(read_file(folder.at("shared/m.json")), content);
+    EXPECT_EQ(read_file(folder.at("other/m.json")), content);
   }
   static_cast<void>(folder.file("out/.robomill-unfinished", "modes.json\t.m.12-0.json\n"));
   fs::create_symlink("out/modes.json", folder.at("link.json"));

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/byte_order.hpp"
 
 namespace robomill::io {
 namespace {
@@ -16,11 +17,7 @@ constexpr std::size_t tag_bytes = 8;
 constexpr std::size_t level_4_header_bytes = 20;
 
 std::uint32_t number(std::string_view bytes, std::size_t at, bool big_endian) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = value << 8 | static_cast<unsigned char>(bytes[at + (big_endian ? i : 3 - i)]);
-  }
-  return value;
+  return static_cast<std::uint32_t>(number_at(bytes, at, 4, big_endian));
 }
 
 /// A MAT file's variables, one behind the other.

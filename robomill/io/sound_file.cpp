@@ -6,31 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <system_error>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/byte_order.hpp"
 #include "robomill/io/file.hpp"
 
 namespace robomill::io {
 namespace {
-
-/// Numbers of a RIFF file, little-endian, or of a RIFX file, big-endian.
-struct Numbers {
-  bool big_endian = false;
-
-  [[nodiscard]] std::uint64_t at(std::string_view bytes, std::size_t offset, std::size_t width) const {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < width; ++i) {
-      const std::size_t byte = offset + (big_endian ? i : width - 1 - i);
-      value = value << 8 | static_cast<unsigned char>(bytes[byte]);
-    }
-    return value;
-  }
-};
 
 /// How long the samples are by the header, and how long they are.
 struct WavLength {
@@ -53,7 +39,7 @@ std::optional<WavLength> wav_length(int file, std::uint64_t file_bytes) {
   if (head.size() < 12 || head.substr(8, 4) != "WAVE") return std::nullopt;
   const std::string form(head.substr(0, 4));
   if (form != "RIFF" && form != "RIFX" && form != "RF64") return std::nullopt;
-  const Numbers numbers{form == "RIFX"};
+  const bool big_endian = form == "RIFX";  // RIFF is little-endian
   WavLength out;
   std::uint64_t long_size = 0;  // of the samples of an RF64 file
   std::uint64_t offset = 12;
@@ -61,14 +47,14 @@ std::optional<WavLength> wav_length(int file, std::uint64_t file_bytes) {
     const std::string_view chunk = read_at(file, offset, buffer);
     if (chunk.size() < 8) return std::nullopt;
     const std::string_view name = chunk.substr(0, 4);
-    const std::uint64_t size = numbers.at(chunk, 4, 4);
+    const std::uint64_t size = number_at(chunk, 4, 4, big_endian);
     if (name == "data") {
       out.stated_bytes = size == unknown ? long_size : size;  // unknown: as a stream's recorder leaves it
       out.bytes = file_bytes - std::min(file_bytes, offset + 8);
       return size == unknown && long_size == 0 ? std::nullopt : std::optional(out);
     }
-    if (name == "ds64" && chunk.size() == 24) long_size = numbers.at(chunk, 16, 8);
-    if (name == "fmt " && chunk.size() >= 20) out.bytes_per_s = numbers.at(chunk, 16, 4);
+    if (name == "ds64" && chunk.size() == 24) long_size = number_at(chunk, 16, 8, big_endian);
+    if (name == "fmt " && chunk.size() >= 20) out.bytes_per_s = number_at(chunk, 16, 4, big_endian);
     offset += 8 + size + size % 2;
   }
   return std::nullopt;
@@ -102,7 +88,7 @@ SoundFile open_sound(const std::filesystem::path& path) {
   out.path = path;
   int error = 0;
   out.file = open_descriptor(path.c_str(), O_RDONLY, error);
-  if (error != 0) throw InvalidInput(path.string(), "cannot be read", std::strerror(error));
+  if (error != 0) throw InvalidInput(path.string(), "cannot be read", error_text(error));
   if (const auto length = wav_length(out.file.get(), file_bytes)) out.note = note_of(path, *length);
   out.sound.reset(sf_open_fd(out.file.get(), SFM_READ, &out.info, SF_FALSE));
   if (!out.sound) throw InvalidInput(path.string(), std::string("is no sound file: ") + sf_strerror(nullptr));

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "robomill/base/random.hpp"
+#include "testing/jobs/lobes_file.hpp"
 #include "testing/processes.hpp"
 
 namespace robomill::faults {
@@ -25,24 +26,12 @@ std::string one_mode() {
   return text;
 }
 
-constexpr const char* lobes_toml = R"([tool]
-teeth = 3
-diameter_mm = 12
-[cut]
-direction = "up"
-radial_depth_mm = 1.8
-feed_per_tooth_mm = 0.01
-[coefficients]
-tangential_n_per_mm2 = 712
-radial_n_per_mm2 = 287
-[dynamics]
-x = [{ frequency_hz = 620, damping_ratio = 0.03, modal_mass_kg = 0.6 }]
-y = [{ frequency_hz = 660, damping_ratio = 0.03, modal_mass_kg = 0.6 }]
-[lobes]
-spindle_speed_rpm = [6000, 9000]
-axial_depth_mm = [0, 3]
-grid = [6, 4]
-)";
+std::string lobes_toml() {
+  return test_support::lobes_file(
+      "spindle_speed_rpm = [6000, 9000]\naxial_depth_mm = [0, 3]\ngrid = [6, 4]\n[dynamics]\n"
+      "x = [{ frequency_hz = 620, damping_ratio = 0.03, modal_mass_kg = 0.6 }]\n"
+      "y = [{ frequency_hz = 660, damping_ratio = 0.03, modal_mass_kg = 0.6 }]\n");
+}
 
 constexpr const char* modes_toml = R"([[modes]]
 frequency_hz = 620
@@ -163,7 +152,7 @@ Files inputs_of_verb(std::string_view verb) {
     return {{"assembly.toml", assembly_toml()}, {"tools.csv", "tool,length_mm,diameter_mm\nbar,118,12\nshort,80,12\n"}};
   }
   if (verb == "joint") return {{"assembly.toml", assembly_toml()}};
-  if (verb == "lobes" || verb == "simulate") return {{"lobes.toml", lobes_toml}};
+  if (verb == "lobes" || verb == "simulate") return {{"lobes.toml", lobes_toml()}};
   if (verb == "explain") {
     return {{"modes.toml", modes_toml}};
   }
@@ -181,7 +170,7 @@ Files inputs_of_verb(std::string_view verb) {
              "0,90,0,100,0,-0.016,0.064,0\n"}};
   }
   if (verb == "cell check") return {{"cell.toml", cell_toml}, {"slot.ngc", slot_ngc}};
-  if (verb == "monitor a wav") return {{"lobes.toml", lobes_toml}, {"monitor.toml", wav_monitor_toml}};
+  if (verb == "monitor a wav") return {{"lobes.toml", lobes_toml()}, {"monitor.toml", wav_monitor_toml}};
   if (verb == "smooth") return {{"cell.toml", smoothing_cell()}, {"part.ngc", part_ngc}};
   if (verb == "monitor") {
     return {{"monitor.toml",
@@ -200,7 +189,7 @@ Files inputs_of_verb(std::string_view verb) {
              "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 12000\n[decide]\nfree = [\"spindle_speed\"]\n"}};
   }
   if (verb == "plan") {
-    return {{"lobes.toml", lobes_toml},
+    return {{"lobes.toml", lobes_toml()},
             {"modes.toml", modes_toml},
             {"job.toml",
              "[job]\nmodes = \"modes.toml\"\nlobes = \"lobes.toml\"\n[spindle]\nmin_speed_rpm = 6000\n"
