@@ -61,7 +61,8 @@ Files files_of(const fs::path& folder) {
 std::string without_times(std::string text) {
   for (const std::string marker :
        {"\"seconds\":", "\"plan_seconds\":", "\"microseconds_per_sample\":", "\"compute_us\":", "\"compute_mean_us\":",
-        "\"compute_max_us\":", "planned in ", " evaluations in ", " runs, ", "\"created\":\""}) {
+        "\"compute_max_us\":", "planned in ", " evaluations in ", " of the chart in ", " removed; ", " runs, ",
+        "\"created\":\""}) {
     for (std::size_t at = text.find(marker); at != std::string::npos; at = text.find(marker, at + 1)) {
       const std::size_t begin = at + marker.size();
       text.erase(begin, text.find_first_not_of(" :.0123456789e+-", begin) - begin);
