@@ -18,10 +18,10 @@
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 #include "robomill/io/output_places.hpp"
 #include "robomill/jobs/init.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/version.hpp"
@@ -161,7 +161,7 @@ void CommandLine::add_structure_verbs() {
                            ->delimiter(',')
                            ->check(number());
   sub->add_option("--axes", modes.axes, "base or flange: what the posture's modes are written in")
-      ->check(one_of_words(jobs::posture_axes_names))
+      ->check(one_of_words(cell::posture_axes_names))
       ->needs(cell);
   cell->needs(joints)->excludes(frfs);
   joints->needs(cell);

@@ -6,9 +6,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/pages.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/files/fit_toml.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -30,11 +30,11 @@ modal::FitOptions options_of(const ModesCommand& command, const Common& common, 
 }
 
 /// The posture of --joints, with errors in the option's words.
-jobs::ModesOfPosture posture_of(const ModesCommand& command, Progress& progress) {
+cell::ModesOfPosture posture_of(const ModesCommand& command, Progress& progress) {
   std::vector<double> joints;
   for (const double angle : command.joints_deg) joints.push_back(angle * units::deg);
   try {
-    return jobs::posture_modes(command.cell, joints, value_in(jobs::posture_axes_names, command.axes).value(),
+    return cell::posture_modes(command.cell, joints, value_in(cell::posture_axes_names, command.axes).value(),
                                progress);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
@@ -48,7 +48,7 @@ jobs::ModesOfPosture posture_of(const ModesCommand& command, Progress& progress)
 
 /// The modes of a cell's posture.
 Exit run_posture(const ModesCommand& command, const Common& common, Progress& progress) {
-  const jobs::ModesOfPosture posture = posture_of(command, progress);
+  const cell::ModesOfPosture posture = posture_of(command, progress);
   write_result(common, posture);
   show(common, jobs::summary(posture), [&] { return jobs::page_of(posture); });
   return exit_of(jobs::shortfall(posture));

@@ -14,7 +14,7 @@ namespace robomill::app {
 namespace {
 
 /// Runs the job; what it rejects of the command line is reported by the option's name.
-jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
+process::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
   try {
     return jobs::run_smooth(job, progress);
   } catch (const InvalidInput& error) {
@@ -29,17 +29,17 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   jobs::SmoothJob job;
   job.program = command.program;
   job.cell = command.cell;
-  if (!common.to_stdout()) job.output = common.output;
+  if (!common.to_stdout()) job.options.output = common.output;
   if (command.method) job.method = value_in(path::method_names, *command.method);
   job.compare = command.compare;
   job.near_deg = command.posture_deg;
-  job.keep_violations = command.keep_violations;
-  job.record = is_html(common.report);
+  job.options.keep_violations = command.keep_violations;
+  job.options.record = is_html(common.report);
   if (command.program_period_ms) {
     require_positive("--program-period-ms", *command.program_period_ms, "ms");
-    job.program_period_s = *command.program_period_ms * units::ms;
+    job.options.program_period_s = *command.program_period_ms * units::ms;
   }
-  const jobs::SmoothResult result = run_job(job, progress);
+  const process::SmoothResult result = run_job(job, progress);
   if (common.to_stdout()) fmt::print("{}", path::smooth_json(result.smoothed));
   if (!common.report.empty()) {
     const page::Report page = jobs::page_of(result);

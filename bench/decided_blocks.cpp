@@ -26,9 +26,10 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/plan_decision.hpp"
-#include "robomill/jobs/program_forces.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/simulation/posture.hpp"
@@ -47,8 +48,8 @@ struct Settings {
 
 /// A program as it was run and judged.
 struct Judged {
-  const jobs::ForcesResult& forces;
-  const jobs::ProgramBlocks& blocks;
+  const process::ForcesResult& forces;
+  const process::ProgramBlocks& blocks;
 };
 
 /// A free vibration of the structure has so many time constants in the first run, and the quarters of the time at which
@@ -115,18 +116,18 @@ void simulate(const simulation::PostureCut& cut, bool fine, InTime& out) {
   out.fine_differs = chatters(simulation::simulate(cut, options)) != out.chatters;
 }
 
-InTime in_time(const Judged& program, std::size_t block, const jobs::DynamicsAt& dynamics, bool fine) {
+InTime in_time(const Judged& program, std::size_t block, const process::DynamicsAt& dynamics, bool fine) {
   InTime out;
-  const jobs::BlockRow& row = program.blocks.rows[block];
+  const process::BlockRow& row = program.blocks.rows[block];
   if (!row.cuts) return out;
   out.cuts = true;
   const cutting::PoseEngagement& engaged = program.forces.program->cuts[block];
-  const jobs::BlockResult& load = program.forces.program->blocks[block];
+  const process::BlockResult& load = program.forces.program->blocks[block];
   const Eigen::Matrix3d base_from_feed = program.forces.cell->cell.workpiece.linear() * engaged.work_from_feed;
   simulation::PostureCut cut;
-  cut.cutter = program.forces.file.cutter;
+  cut.cutter = program.forces.cut.cutter;
   cut.engagement = engaged.engagement;
-  cut.coefficients = program.forces.file.coefficients;
+  cut.coefficients = program.forces.cut.coefficients;
   cut.motion = {.feed_per_tooth_m = load.force.feed_per_tooth_m,
                 .spindle_speed_rad_per_s = row.spindle_speed_rad_per_s};
   cut.structure = modal::tip_modes(modal::turned(dynamics(load.joints).modes, base_from_feed.transpose()), {}, 0.0);
@@ -162,7 +163,7 @@ Drawn draw(const Judged& before, const Judged& after, const Settings& settings) 
   return out;
 }
 
-std::string text_of(const InTime& found, const jobs::BlockRow& row) {
+std::string text_of(const InTime& found, const process::BlockRow& row) {
   if (!found.cuts) return "- | - | -";
   if (!found.error.empty()) return fmt::format("{:.4f} | - | {}", row.cut.spectral_radius, found.error);
   const std::string verdict =
@@ -181,7 +182,7 @@ struct Score {
   int multipliers = 0;      ///< of small vibrations that were found
   double longest_s = 0.0, multiplier_off = 0.0;
   int least_steps = std::numeric_limits<int>::max(), most_steps = 0;
-  void add(const InTime& found, const jobs::BlockRow& row) {
+  void add(const InTime& found, const process::BlockRow& row) {
     if (!found.cuts) return;
     ++simulated;
     if (!found.error.empty()) {
@@ -219,7 +220,7 @@ struct Score {
 using Found = std::array<InTime, 2>;
 
 std::vector<Found> cut_in_time(const std::array<Judged, 2>& programs, const std::vector<std::size_t>& blocks,
-                               const jobs::DynamicsAt& dynamics, bool fine) {
+                               const process::DynamicsAt& dynamics, bool fine) {
   std::vector<Found> out(blocks.size());
   const auto begun = std::chrono::steady_clock::now();
   const std::clock_t worked = std::clock();
@@ -238,7 +239,8 @@ std::vector<Found> cut_in_time(const std::array<Judged, 2>& programs, const std:
 }
 
 /// Prints the table and its summary. Whether every decided block is stable in time.
-bool judge_in_time(const std::array<Judged, 2>& programs, const jobs::DynamicsAt& dynamics, const Settings& settings) {
+bool judge_in_time(const std::array<Judged, 2>& programs, const process::DynamicsAt& dynamics,
+                   const Settings& settings) {
   const Drawn drawn = draw(programs[0], programs[1], settings);
   std::vector<std::size_t> blocks = drawn.random;
   blocks.insert(blocks.end(), drawn.unstable.begin(), drawn.unstable.end());
@@ -255,7 +257,7 @@ bool judge_in_time(const std::array<Judged, 2>& programs, const jobs::DynamicsAt
     const bool random = k < drawn.random.size();
     fmt::print("| {}{} | {} |", i + 1, random ? "" : "†", programs[1].forces.program->program.blocks[i].line);
     for (std::size_t p = 0; p < 2; ++p) {
-      const jobs::BlockRow& row = programs.at(p).blocks.rows[i];
+      const process::BlockRow& row = programs.at(p).blocks.rows[i];
       (random ? score : unstable_too).at(p).add(found[k].at(p), row);
       fmt::print(" {:.0f} | {:.3f} | {} |", row.spindle_speed_rad_per_s / units::rpm, row.axial_depth_m / units::mm,
                  text_of(found[k].at(p), row));
@@ -313,7 +315,7 @@ double chip_of(const Judged& program, std::size_t block) {
 }
 
 /// Least and greatest chip: what the job asks for, else what the program makes as it is.
-std::array<double, 2> chips_of(const jobs::DecideOptions& options, const Judged& before) {
+std::array<double, 2> chips_of(const process::DecideOptions& options, const Judged& before) {
   std::array<double, 2> made = {std::numeric_limits<double>::infinity(), 0.0};
   for (std::size_t i = 0; i < before.blocks.rows.size(); ++i) {
     const double chip = before.blocks.rows[i].cuts ? chip_of(before, i) : 0.0;
@@ -342,9 +344,9 @@ bool judge_loads(const jobs::PlanResult& plan, const Judged& before, const Judge
                                    {"a joint's torque, of its drive's", "", 1.0, false}}};
   const decision::RecommendOptions& machine = plan.job.recommend;
   for (std::size_t i = 0; i < after.blocks.rows.size(); ++i) {
-    const jobs::BlockRow& row = after.blocks.rows[i];
+    const process::BlockRow& row = after.blocks.rows[i];
     if (!row.cuts) continue;
-    const jobs::BlockResult& load = after.forces.program->blocks[i];
+    const process::BlockResult& load = after.forces.program->blocks[i];
     const double speed = row.spindle_speed_rad_per_s;
     limits[margin].look(i, row.stability_margin, machine.depth_margin);
     limits[force].look(i, load.force.peak_force_n, plan.job.decide.max_force_n);
@@ -408,16 +410,17 @@ bool judge_path(const jobs::PlanResult& plan) {
 }
 
 /// The job's program as it is, run and judged as a plan does before it decides.
-void run_as_programmed(const jobs::CellFile& cell, const jobs::DynamicsAt& dynamics, jobs::PlanResult& plan) {
-  jobs::ProgramRun run = {.keep_cuts = true, .deflect = true};
+void run_as_programmed(const cell::CellFile& cell, const process::DynamicsAt& dynamics, jobs::PlanResult& plan) {
+  process::ProgramRun run = {.keep_cuts = true, .deflect = true};
+  std::optional<program::ProgramReading> reading;
   if (path::has_smoothing(*cell.document)) {
-    plan.path = jobs::run_smooth({.program = plan.job.program, .cell = cell.path, .place = false}, cell);
-    run.reading = plan.path->reading;
+    plan.path = jobs::run_smooth({.program = plan.job.program, .cell = cell.path, .options = {.place = false}}, cell);
+    reading = plan.path->reading;
     run.joints = plan.path->block_joints;
   }
-  plan.forces = jobs::run_forces_with(jobs::read_forces(plan.job.forces, jobs::ForcesJob::program), plan.job.program,
-                                      cell, run, Progress::none());
-  plan.blocks = jobs::judge_blocks(*plan.forces, dynamics, {.scan_points = 0});
+  plan.forces = jobs::run_forces_along(process::read_forces(plan.job.forces, process::ForcesJob::program),
+                                       plan.job.program, cell, run, reading);
+  plan.blocks = process::judge_blocks(*plan.forces, dynamics, {.scan_points = 0});
 }
 
 Settings read(int argc, char** argv) {
@@ -443,14 +446,14 @@ int run(const Settings& settings) {
   if (!plan.job.judges_blocks() || plan.job.has_structure()) {
     throw InvalidInput(settings.job.string(), "must have forces, cell and program, and no dynamics but the cell's");
   }
-  const jobs::CellFile cell = jobs::read_cell(plan.job.cell, jobs::Robots::serial);
+  const cell::CellFile cell = cell::read_cell(plan.job.cell, cell::Robots::serial);
   constexpr std::array<bool, 3> pushed{true, true, true};  // it chooses warnings alone, which nobody reads here
-  const jobs::DynamicsAt dynamics = jobs::dynamics_of_cell(cell, pushed, plan.warnings, plan.notes, plan.assumed);
+  const process::DynamicsAt dynamics = process::dynamics_of_cell(cell, pushed, plan.warnings, plan.notes, plan.assumed);
   run_as_programmed(cell, dynamics, plan);
-  const jobs::ForcesResult forces = *plan.forces;
-  const jobs::ProgramBlocks blocks = *plan.blocks;
+  const process::ForcesResult forces = *plan.forces;
+  const process::ProgramBlocks blocks = *plan.blocks;
   jobs::decide_conditions(plan, cell, dynamics, {.scan_points = 0}, {}, Progress::none());
-  if (plan.decision->status != jobs::DecideResult::Status::found) {
+  if (plan.decision->status != process::DecideResult::Status::found) {
     fmt::print("No conditions were decided: {}\n", plan.decision->reason);
     return 1;
   }

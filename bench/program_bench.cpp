@@ -78,7 +78,7 @@ void whole_program(benchmark::State& state) {
   }
 }
 
-// 300 blocks and ten times as many. The size of the figures in robomill/jobs/README.md is 40 x 100.
+// 300 blocks and ten times as many. The size of the figures in robomill/process/README.md is 40 x 100.
 BENCHMARK(whole_program)
     ->Args({12, 24})
     ->Args({30, 99})

@@ -5,9 +5,9 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { chromiumPath, run } from '../web/arguments.mjs';
-import { launch, openPage } from '../web/chromium.mjs';
-import { settle } from '../web/hand.mjs';
+import { chromiumPath, run } from '../web/checks/arguments.mjs';
+import { launch, openPage } from '../web/checks/chromium.mjs';
+import { settle } from '../web/checks/hand.mjs';
 
 const root = resolve(fileURLToPath(import.meta.url), '../..');
 const view = { width: 1220, height: 900 };

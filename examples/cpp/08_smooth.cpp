@@ -1,15 +1,16 @@
 // An NC program as a robot can run it, here a KUKA KR 210: every joint within its velocity, acceleration and jerk.
-#include <robomill/jobs/smooth.hpp>
+#include <robomill/cell/files/cell_toml.hpp>
+#include <robomill/path/files/smoothing_toml.hpp>
+#include <robomill/process/smooth.hpp>
+#include <robomill/program/files/program_files.hpp>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <random>
+#include <memory>
 #include <string>
 
 using namespace robomill;
 
-constexpr const char* cell = R"([robot]
+constexpr const char* cell_text = R"([robot]
 kind = "serial"
 base_origin_mm = [0, 0, 225.6]
 dh = [
@@ -40,20 +41,23 @@ max_angular_acceleration_deg_per_s2 = 600
 max_angular_jerk_deg_per_s3 = 12000
 )";
 
+constexpr const char* program_text = "G21 G90\nG0 X0 Y0 Z0 A0 C0\nG1 X40 F2400\nY5 A-5\nX0\nY10 A-10\nX40\nM30\n";
+
 int main() {
-  const auto folder = std::filesystem::temp_directory_path() / ("robomill-" + std::to_string(std::random_device{}()));
-  std::filesystem::create_directory(folder);
-  std::ofstream(folder / "cell.toml") << cell;
-  std::ofstream(folder / "part.ngc") << "G21 G90\nG0 X0 Y0 Z0 A0 C0\nG1 X40 F2400\nY5 A-5\nX0\nY10 A-10\nX40\nM30\n";
-  const jobs::SmoothResult result = jobs::run_smooth(
-      {.program = folder / "part.ngc", .cell = folder / "cell.toml", .output = folder / "trajectory.csv"});
-  std::filesystem::remove_all(folder);  // with the trajectory: here its summary is enough
+  // Text in memory is read as a file of that name would be.
+  const cell::CellFile cell = cell::read_cell(io::TomlSource("cell.toml", cell_text));
+  const std::unique_ptr<robot::Kinematics> machine = cell::kinematics(cell);
+  const path::SmoothingFile smoothing = path::read_smoothing(*cell.document, machine->limits(), machine->joints());
+  const program::Program part =
+      program::read_program_text(program_text, "part.ngc", process::smoothed_reading(cell, smoothing.options));
+  program::ProgramSource source(part);
+  const process::SmoothResult result = process::smooth(source, "part.ngc", cell, smoothing, {});
   const path::Summary& summary = result.first().summary;
   std::printf("%zu blocks in %.3f s, %zu samples; at the programmed feed %.3f s\n", summary.blocks, summary.duration_s,
               summary.samples, 130.0 / 40.0);
   std::printf("%zu violations: tip within %.4f mm of the program, joints at up to %.0f %% of their limits\n",
               summary.check.violations(), summary.check.tip_error_m.max * 1e3,
-              100.0 * jobs::joint_share(summary.check));
+              100.0 * process::joint_share(summary.check));
   // Corners are rounded within the tolerance, which saves less than a hundredth of the 130 mm programmed at 40 mm/s.
   return result.holds() && summary.duration_s > 0.99 * 130.0 / 40.0 ? 0 : 1;
 }

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <numbers>
 
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/posture.hpp"
+#include "robomill/cell/dynamics.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "testing/support.hpp"
@@ -36,7 +36,7 @@ TEST(TenPostures, HaveACellThatReadsBackAsWhatIsTold) {
   const test::Folder folder;
   const modal::testing::SimulatedArm arm(arm_seed);
   const std::vector<Eigen::VectorXd> joints = joints_of_poses(arm);
-  const jobs::CellFile read = jobs::read_cell(folder.file("cell.toml", cell_toml(arm, joints)));
+  const cell::CellFile read = cell::read_cell(folder.file("cell.toml", cell_toml(arm, joints)));
   ASSERT_EQ(read.postures.size(), 10U);
   for (std::size_t p = 0; p < joints.size(); ++p) {
     for (std::size_t k = 0; k < 6; ++k) {
@@ -65,7 +65,7 @@ TEST(TenPostures, AreNamedWhereAMeasurementDoesNotBelong) {
                       arm.measure(joints[p], p + 1, {.line_spacing_hz = 3.0}));
   }
   const auto warnings = [&] {
-    return jobs::cell_dynamics(jobs::read_cell(folder.file("cell.toml", cell_toml(arm, joints)))).warnings;
+    return cell::cell_dynamics(cell::read_cell(folder.file("cell.toml", cell_toml(arm, joints)))).warnings;
   };
   EXPECT_TRUE(warnings().empty()) << testing::PrintToString(warnings());
   std::filesystem::rename(folder.at("posture_2.uff"), folder.at("swapped.uff"));

@@ -37,7 +37,7 @@ max_angular_acceleration_deg_per_s2 = 600
 max_angular_jerk_deg_per_s3 = 12000
 sample_period_ms = 4
 )";
-/// What stands about the tool.
+/// Obstacles around the tool.
 constexpr const char* geometry = R"(
 [geometry]
 stickout_mm = 45

@@ -77,9 +77,4 @@ void require_inside(const fs::path& path) {
   }
 }
 
-fs::path scratch_folder() {
-  const std::shared_ptr<const fs::path> folder = confined_to();
-  return folder ? *folder : fs::temp_directory_path();
-}
-
 }  // namespace robomill::io

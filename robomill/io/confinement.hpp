@@ -23,8 +23,4 @@ class ROBOMILL_API Confinement {
 /// through a link without a target
 void require_inside(const std::filesystem::path& path);
 
-/// Where a file may stand that lives for a moment: the folder of the Confinement, where one lives; else that of
-/// temporary files.
-[[nodiscard]] ROBOMILL_API std::filesystem::path scratch_folder();
-
 }  // namespace robomill::io

@@ -30,7 +30,6 @@ TEST(Confinement, LetsOutNeitherReadersNorWriters) {
   {
     const Confinement confinement(inside);
     EXPECT_EQ(read_file(own), "own");
-    EXPECT_EQ(scratch_folder(), fs::canonical(inside));
     for (const fs::path& path :
          {secret, inside / "link.txt", inside / "way" / "secret.txt", dots, fs::path("/etc/passwd")}) {
       EXPECT_NE(rejection([&] { (void)read_file(path); }).find("outside the folder that is served"), std::string::npos)
@@ -46,7 +45,6 @@ TEST(Confinement, LetsOutNeitherReadersNorWriters) {
     write_file(inside / "new/deep/file", "x");
   }
   EXPECT_EQ(read_file(secret), "42");
-  EXPECT_EQ(scratch_folder(), fs::temp_directory_path());
   EXPECT_FALSE(fs::exists(outside / "new"));
 }
 

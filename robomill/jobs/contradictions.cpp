@@ -26,7 +26,7 @@ std::string name_of(const std::filesystem::path& path) {
 /// Looks at one key after another.
 class Comparison {
  public:
-  Comparison(const LobesFile& lobes, const ForcesFile& forces) : lobes_(lobes), forces_(forces) {}
+  Comparison(const LobesFile& lobes, const process::ForcesFile& forces) : lobes_(lobes), forces_(forces) {}
 
   void number(const std::string& key, double a, double b, double unit) {
     if (both(key) && differ(a, b)) add(key, fmt::format("{:.6g}", a / unit), fmt::format("{:.6g}", b / unit));
@@ -55,7 +55,7 @@ class Comparison {
   }
 
   const LobesFile& lobes_;
-  const ForcesFile& forces_;
+  const process::ForcesFile& forces_;
 };
 
 const char* word(cutting::MillingDirection direction) {
@@ -72,7 +72,7 @@ const char* word(cutting::MillingDirection direction) {
 
 }  // namespace
 
-std::vector<std::string> contradictions(const LobesFile& lobes, const ForcesFile& forces) {
+std::vector<std::string> contradictions(const LobesFile& lobes, const process::ForcesFile& forces) {
   Comparison compare(lobes, forces);
   const cutting::FlatEndMill& a = lobes.problem.milling.tool;
   const cutting::FlatEndMill& b = forces.cutter.mill;
@@ -93,7 +93,7 @@ std::vector<std::string> contradictions(const LobesFile& lobes, const ForcesFile
               forces.coefficients.tangential_edge_n_per_m, units::n_per_mm);
   coefficient("coefficients.radial_edge_n_per_mm", k.radial_edge_n_per_m, forces.coefficients.radial_edge_n_per_m,
               units::n_per_mm);
-  if (forces.job == ForcesJob::revolution) {
+  if (forces.job == process::ForcesJob::revolution) {
     if (lobes.direction) compare.text("cut.direction", word(*lobes.direction), word(forces.cut.direction));
     compare.number("cut.radial_depth_mm", lobes.radial_depth_m, forces.cut.radial_depth_m, units::mm);
     compare.number("cut.feed_per_tooth_mm", lobes.problem.milling.feed_per_tooth_m, forces.motion.feed_per_tooth_m,
@@ -102,7 +102,7 @@ std::vector<std::string> contradictions(const LobesFile& lobes, const ForcesFile
   return compare.found;
 }
 
-std::vector<std::string> contradictions(const Job& job, const ForcesFile& forces) {
+std::vector<std::string> contradictions(const Job& job, const process::ForcesFile& forces) {
   const double edges_m = forces.cutter.cutting_height_m;
   const bool stated = forces.document && forces.document->has("tool.cutting_height_mm");
   if (!stated || !(job.recommend.max_axial_depth_m > edges_m * (1.0 + same_number))) return {};

@@ -1,120 +1,37 @@
 #pragma once
-#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
-#include "robomill/cutting/default_stock.hpp"
-#include "robomill/cutting/program_forces.hpp"
-#include "robomill/cutting/static_deflection.hpp"
-#include "robomill/decision/recommend.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/files/forces_toml.hpp"
-#include "robomill/program/program.hpp"
-#include "robomill/robot/pose.hpp"
-#include "robomill/robot/redundancy.hpp"
-#include "robomill/simulation/simulation.hpp"
+#include "robomill/cell/cell.hpp"
+#include "robomill/process/files/forces_toml.hpp"
+#include "robomill/process/forces.hpp"
+#include "robomill/program/files/program_files.hpp"
 
-// Method: robomill/jobs/README.md, "Forces (`forces.hpp`)"
+// Method: robomill/process/README.md, "Forces (`forces.hpp`)"
 
 namespace robomill::jobs {
-
-/// A robot in the posture of one cut.
-struct CutPosture {
-  Eigen::Matrix3d compliance_m_per_n = Eigen::Matrix3d::Zero();  ///< of the tip, in F
-  Eigen::Matrix3d base_from_feed = Eigen::Matrix3d::Identity();  ///< P_B = R P_F
-  robot::ToolPose pose;                                          ///< in W
-  double condition_number = 0.0;
-};
-
-/// forces.toml for one revolution.
-struct RevolutionForces {
-  cutting::StaticDeflection deflected;
-  std::optional<CutPosture> posture = {};
-  std::optional<robot::Redundancy> spindle_rotation = {};  ///< with a robot: what turning it about the tool does
-  std::optional<simulation::Simulation> vibration = {};    ///< with dynamics
-  Eigen::Matrix3Xd vibrating_force_n = {};                 ///< of its last revolution, at the steps of the static one
-};
-
-/// One block of a program with the robot that runs it.
-struct BlockResult {
-  cutting::BlockForce force;
-  Eigen::VectorXd joints = {};                             ///< at the block's end; empty without a robot
-  Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< of the tip under the mean force while cutting, in W
-  /// Under that mean force of a revolution which bends the robot most.
-  Eigen::Vector3d peak_deflection_m = Eigen::Vector3d::Zero();
-  double condition_number = 0.0;
-  /// Where the engagement feels the deflection (ProgramForces::deflected).
-  enum class Settled {
-    found,      ///< the deflection is that of the force which the deflected tool feels
-    unsettled,  ///< it still changes after the last pass: force and deflection drive each other
-    lost        ///< the tool is pushed out of the cut that the program asks for
-  };
-  Settled settled = Settled::found;
-};
-
-/// What a program starts from.
-struct ProgramStock {
-  cutting::Stock stock;
-  std::optional<cutting::DefaultStock> assumed = {};  ///< where the job gives none
-};
-
-struct ProgramForces {
-  std::filesystem::path path = {};  ///< of its file
-  program::Program program;
-  std::vector<BlockResult> blocks = {};
-  std::optional<ProgramStock> stock = {};  ///< none: each block beside its neighbouring pass
-  double seconds = 0.0;
-  double removed_volume_m3 = 0.0;
-  bool deflected = false;  ///< the tool cuts where the robot bends to; else where the program has it
-  /// Where each block has most of the cutter in the material; empty engagement: it does not cut. Only where asked for.
-  std::vector<cutting::PoseEngagement> cuts = {};
-  /// Blocks in which teeth were found in the material: the one meaning of "cuts" in summary, documents and page.
-  [[nodiscard]] ROBOMILL_API std::size_t cutting_blocks() const;
-};
-
-struct ForcesResult {
-  ForcesFile file;
-  std::optional<CellFile> cell = {};
-  std::optional<RevolutionForces> revolution = {};
-  std::optional<ProgramForces> program = {};
-  std::optional<decision::SpindleCapacity> spindle = {};  ///< what it has along the program, where the job knows
-  std::vector<std::string> warnings = {}, notes = {};
-  std::vector<Assumption> assumed = {};
-};
 
 /// Forces of forces.toml: over one revolution, or, with a program, block by block along it.
 /// @param program  empty: one revolution
 /// @param cell     empty: the one that forces.toml names, if any
 /// @throws InvalidInput with file, line, key and value; Interrupted
-[[nodiscard]] ROBOMILL_API ForcesResult run_forces(const std::filesystem::path& forces,
-                                                   const std::filesystem::path& program,
-                                                   const std::filesystem::path& cell,
-                                                   Progress& progress = Progress::none());
+[[nodiscard]] ROBOMILL_API process::ForcesResult run_forces(const std::filesystem::path& forces,
+                                                            const std::filesystem::path& program,
+                                                            const std::filesystem::path& cell,
+                                                            Progress& progress = Progress::none());
 /// The same of files that have been read, forces.toml for what the program asks (ForcesFile::job).
 /// @param cell  none: the one that forces.toml names, if any
-[[nodiscard]] ROBOMILL_API ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program,
-                                                   std::optional<CellFile> cell, Progress& progress = Progress::none());
-
-/// What the spindle must give at one place.
-struct SpindleLoad {
-  std::size_t line = 0;  ///< of the program; 0 for one revolution
-  double spindle_speed_rad_per_s = 0.0;
-  double torque_n_m = 0.0;  ///< largest mean over one revolution
-  double power_w = 0.0;     ///< largest mean over forces.power_time_s
-};
-/// Of one revolution, or of every block that cuts.
-[[nodiscard]] ROBOMILL_API std::vector<SpindleLoad> spindle_loads(const ForcesResult& result);
-
-/// The stock in words, of one that was assumed with where its height comes from; empty for one beside neighbouring
-/// passes.
-[[nodiscard]] ROBOMILL_API std::string stock_text(const ProgramForces& program);
-
-/// A row a step of rotation, or a row a block.
-[[nodiscard]] ROBOMILL_API std::string forces_csv(const ForcesResult& result);
-[[nodiscard]] ROBOMILL_API std::string forces_json(const ForcesResult& result);
+[[nodiscard]] ROBOMILL_API process::ForcesResult run_forces(const process::ForcesFile& forces,
+                                                            const std::filesystem::path& program,
+                                                            std::optional<cell::Cell> cell,
+                                                            Progress& progress = Progress::none());
+/// The same along a program that is run so.
+/// @param reading  of the program; none: the cell's
+[[nodiscard]] ROBOMILL_API process::ForcesResult run_forces_along(
+    const process::ForcesFile& forces, const std::filesystem::path& program, std::optional<cell::Cell> cell,
+    const process::ProgramRun& run, const std::optional<program::ProgramReading>& reading = {},
+    Progress& progress = Progress::none());
 
 }  // namespace robomill::jobs

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/page/report.hpp"
 #include "testing/support.hpp"
@@ -41,9 +42,9 @@ std::string single_cut() {
 
 // Compliance, posture and force agree: the deflection is C F with C of the posture, and turning the feed turns it.
 TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
-  const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
+  const process::ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
   ASSERT_TRUE(result.revolution && result.revolution->posture);
-  const RevolutionForces& r = *result.revolution;
+  const process::RevolutionForces& r = *result.revolution;
   const Eigen::Vector3d expected = r.posture->compliance_m_per_n * r.deflected.force.mean_n;
   EXPECT_LE((r.deflected.deflection_m - expected).norm(), 1e-3 * expected.norm());
   EXPECT_NEAR(r.deflected.cut.axial_depth_m, 1e-3 - r.deflected.deflection_m.z(), 1e-10);
@@ -55,9 +56,10 @@ TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
 TEST(RunForces, OfFilesThatWereRead) {
   const std::filesystem::path cell = examples / "ball-end-ur5e" / "cell.toml";
   const std::filesystem::path cut = examples / "ball-end-ur5e" / "cut-1.toml";
-  ForcesFile file = read_forces(cut);
+  process::ForcesFile file = process::read_forces(cut);
   file.cell = "elsewhere.toml";
-  EXPECT_EQ(forces_json(run_forces(std::move(file), {}, read_cell(cell))), forces_json(run_forces(cut, {}, cell)));
+  EXPECT_EQ(process::forces_json(run_forces(file, {}, cell::read_cell(cell))),
+            process::forces_json(run_forces(cut, {}, cell)));
 }
 
 // The numbers of examples/ball-end-ur5e/README.md.
@@ -66,7 +68,7 @@ TEST(RunForces, RunsThePublishedCuts) {
   const double left_mm[] = {0.60395, 0.60086, 0.65104};
   for (int i = 0; i < 3; ++i) {
     const std::string name = "cut-" + std::to_string(i + 1) + ".toml";
-    const ForcesResult result = run_forces(examples / "ball-end-ur5e" / name, {}, {});
+    const process::ForcesResult result = run_forces(examples / "ball-end-ur5e" / name, {}, {});
     EXPECT_EQ(result.revolution->deflected.status, cutting::StaticDeflection::Status::found);
     EXPECT_NEAR(result.revolution->deflected.force.mean_n.z(), mean_z[i], 1e-3 * mean_z[i]) << name;
     EXPECT_NEAR(1e3 * result.revolution->deflected.cut.axial_depth_m, left_mm[i], 1e-3 * left_mm[i]) << name;
@@ -74,11 +76,11 @@ TEST(RunForces, RunsThePublishedCuts) {
 }
 
 TEST(RunForces, WritesARevolution) {
-  const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
-  const std::vector<std::string> rows = lines(forces_csv(result));
+  const process::ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
+  const std::vector<std::string> rows = lines(process::forces_csv(result));
   ASSERT_EQ(rows.size(), 361U);
   EXPECT_EQ(rows.front(), "rotation_deg,fx_n,fy_n,fz_n,torque_n_m");
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   for (const char* key : {"mean_n", "peak_n", "rms_n", "deflection_um"}) EXPECT_EQ(json[key].size(), 3U) << key;
   for (const char* key : {"power_w", "chip_area_mm2", "torque_n_m", "axial_depth_left_mm"}) {
     EXPECT_TRUE(json[key].is_number()) << key;
@@ -86,16 +88,16 @@ TEST(RunForces, WritesARevolution) {
   EXPECT_FALSE(json["engagement"].empty());
   EXPECT_EQ(json["fx_n"].size(), 360U);
   page::Report page;
-  page.forces = forces_json(result);
+  page.forces = process::forces_json(result);
   EXPECT_NE(page::report_html(page).find("\"forces\":{"), std::string::npos);
 }
 
 TEST(RunForces, ReportsTheForceOnTheWorkpieceWithTheOtherSign) {
   const Folder folder;
   const std::string one = single_cut();
-  const auto on_tool = nlohmann::json::parse(forces_json(run_forces(folder.file("tool.toml", one), {}, {})));
+  const auto on_tool = nlohmann::json::parse(process::forces_json(run_forces(folder.file("tool.toml", one), {}, {})));
   const auto on_part = nlohmann::json::parse(
-      forces_json(run_forces(folder.file("part.toml", "force_on = \"workpiece\"\n" + one), {}, {})));
+      process::forces_json(run_forces(folder.file("part.toml", "force_on = \"workpiece\"\n" + one), {}, {})));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(on_tool["mean_n"][axis].get<double>(), -on_part["mean_n"][axis].get<double>());
   }
@@ -108,26 +110,26 @@ TEST(RunForces, VibratesWithThePart) {
   const Folder folder;
   std::string text = single_cut();
   text += "[workpiece_dynamics]\nz = [{ frequency_hz = 300, damping_ratio = 0.05, modal_mass_kg = 3e4 }]\n";
-  const ForcesResult result = run_forces(folder.file("forces.toml", text), {}, {});
+  const process::ForcesResult result = run_forces(folder.file("forces.toml", text), {}, {});
   ASSERT_TRUE(result.revolution->vibration.has_value());
   EXPECT_EQ(result.revolution->vibration->verdict, simulation::Verdict::stable);
   const Eigen::Matrix3Xd& vibrating = result.revolution->vibrating_force_n;
   const cutting::CuttingForce& still = result.revolution->deflected.force;
   ASSERT_EQ(vibrating.cols(), still.force_n.cols());
   EXPECT_LE((vibrating.rowwise().mean() - still.mean_n).norm(), 0.03 * still.mean_n.norm());
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   EXPECT_EQ(json["vibrating_fy_n"].get<std::vector<double>>().at(7), vibrating(1, 7));
-  EXPECT_EQ(lines(forces_csv(result)).front(),
+  EXPECT_EQ(lines(process::forces_csv(result)).front(),
             "rotation_deg,fx_n,fy_n,fz_n,torque_n_m,vibrating_fx_n,vibrating_fy_n,vibrating_fz_n");
 }
 
 TEST(RunForces, RunsAlongAProgramWithTheRobot) {
-  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  const process::ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
   ASSERT_TRUE(result.program.has_value());
-  const ProgramForces& program = *result.program;
+  const process::ProgramForces& program = *result.program;
   ASSERT_EQ(program.blocks.size(), program.program.blocks.size());
   double most = 0.0;
-  for (const BlockResult& row : program.blocks) {
+  for (const process::BlockResult& row : program.blocks) {
     ASSERT_EQ(row.joints.size(), 6);
     most = std::max(most, row.force.peak_force_n);
     // The softest direction of this arm is near 0.5 N/um, the stiffest near 5.
@@ -138,20 +140,20 @@ TEST(RunForces, RunsAlongAProgramWithTheRobot) {
   }
   EXPECT_GT(most, 50.0);
   EXPECT_LT(most, 500.0);
-  const std::vector<std::string> rows = lines(forces_csv(result));
+  const std::vector<std::string> rows = lines(process::forces_csv(result));
   EXPECT_EQ(rows.size(), program.blocks.size() + 1);
   EXPECT_EQ(rows.front().rfind("block,line,x_mm,y_mm,z_mm,axial_depth_mm,radial_depth_mm,mean_fx_n", 0), 0U);
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   EXPECT_EQ(json["blocks"].size(), program.blocks.size());
-  const std::vector<SpindleLoad> loads = spindle_loads(result);
+  const std::vector<process::SpindleLoad> loads = process::spindle_loads(result);
   ASSERT_GT(loads.size(), 200U);
   EXPECT_GT(loads[0].torque_n_m, 0.0);
 }
 
 // highest and worst are those of all blocks that cut; the way is the sum of the blocks' lengths.
 TEST(RunForces, NamesTheHighestAndTheWorstBlocks) {
-  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const process::ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   const nlohmann::json& blocks = json["blocks"];
   std::vector<double> forces;
   for (const nlohmann::json& block : blocks) {
@@ -184,10 +186,10 @@ TEST(RunForces, NamesTheHighestAndTheWorstBlocks) {
   }
   EXPECT_TRUE(json["torque_limit_n_m"].is_null());
   EXPECT_EQ(json["facts"][1]["value"], fmt::format("{} blocks", blocks.size()));
-  ForcesResult rigid = result;
+  process::ForcesResult rigid = result;
   rigid.program->blocks.resize(3);
-  for (BlockResult& row : rigid.program->blocks) row = {.force = {.block = row.force.block}};
-  const nlohmann::json in_air = nlohmann::json::parse(forces_json(rigid));
+  for (process::BlockResult& row : rigid.program->blocks) row = {.force = {.block = row.force.block}};
+  const nlohmann::json in_air = nlohmann::json::parse(process::forces_json(rigid));
   EXPECT_TRUE(in_air["highest"]["peak_f_n"].is_null()) << "no block cuts";
   EXPECT_TRUE(in_air["worst"].empty());
 }
@@ -201,21 +203,22 @@ const std::string pocket_tool =
 TEST(RunForces, APocketWithoutStockIsNoDeeperThanItIs) {
   const Folder folder;
   const std::filesystem::path program = folder.file("pocket.ngc", pocket_program);
-  const ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool), program, {});
+  const process::ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool), program, {});
   double deepest_m = 0.0;
-  for (const BlockResult& row : result.program->blocks) deepest_m = std::max(deepest_m, row.force.axial_depth_m);
+  for (const process::BlockResult& row : result.program->blocks)
+    deepest_m = std::max(deepest_m, row.force.axial_depth_m);
   EXPECT_NEAR(deepest_m, 2e-3, 0.01e-3);
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   EXPECT_EQ(json["stock"]["assumed"], true);
   EXPECT_EQ(json["stock"]["top_from"], "program zero");
   EXPECT_EQ(json["stock"]["max_mm"][2], 0.0);
   ASSERT_FALSE(result.assumed.empty());
   EXPECT_EQ(result.assumed[0].what, "Stock");
-  EXPECT_EQ(result.assumed[0].taken, stock_text(*result.program));
+  EXPECT_EQ(result.assumed[0].taken, process::stock_text(*result.program));
   EXPECT_EQ(result.assumed[0].key, "stock.kind");
-  const ForcesResult with_depth =
+  const process::ForcesResult with_depth =
       run_forces(folder.file("forces.toml", "cut = { axial_depth_mm = 1.5 }\n" + pocket_tool), program, {});
-  EXPECT_EQ(nlohmann::json::parse(forces_json(with_depth))["stock"]["max_mm"][2], -0.5);
+  EXPECT_EQ(nlohmann::json::parse(process::forces_json(with_depth))["stock"]["max_mm"][2], -0.5);
 }
 
 TEST(RunForces, AProgramThatDoesNotGiveItsStocksHeightNeedsOne) {
@@ -236,7 +239,7 @@ TEST(RunForces, SaysWhereAProgramDoesNotFitItsForces) {
                           const std::string& text) {
     std::string program = pocket_program;
     program.replace(program.find(old_text), old_text.size(), new_text);
-    const ForcesResult result =
+    const process::ForcesResult result =
         run_forces(folder.file("forces.toml", "cut = { feed_per_tooth_mm = 0.04 }\n" + pocket_tool + stock),
                    folder.file("pocket.ngc", program), {});
     return std::ranges::any_of(result.warnings,
@@ -258,14 +261,14 @@ TEST(RunForces, CountsTheSameBlocksEverywhere) {
   const std::filesystem::path program =
       folder.file("slot.ngc", "G21 G90 G94\nS10000 M3\nG0 X-300 Y0 Z5\nG0 Z-3\nG1 X300 F3000\nG1 Y200\nG1 Z40\nM2\n");
   const std::string stock = "[stock]\nkind = \"box\"\nmin_mm = [-20, -30, -10]\nmax_mm = [20, 30, 0]\n";
-  const ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool + stock), program, {});
+  const process::ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool + stock), program, {});
   EXPECT_EQ(result.program->cutting_blocks(), 1U);
-  EXPECT_EQ(spindle_loads(result).size(), 1U);
-  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  EXPECT_EQ(process::spindle_loads(result).size(), 1U);
+  const nlohmann::json json = nlohmann::json::parse(process::forces_json(result));
   EXPECT_EQ(json["cutting_blocks"], 1);
   EXPECT_EQ(json["stock"]["assumed"], false);
   page::Report page;
-  page.forces = forces_json(result);
+  page.forces = process::forces_json(result);
   const nlohmann::json shown = nlohmann::json::parse(page::report_json(page));
   EXPECT_EQ(shown["forces"]["cutting_blocks"], 1);
   EXPECT_NEAR(shown["forces"]["highest"]["sustained_power_w"]["value"].get<double>(), 1620.0, 10.0);
@@ -286,10 +289,10 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
   const std::string start = "start_joints_deg = [0, -90, 90, -90, -90, 0]\n";
   const std::string with_start = std::string(cell).insert(cell.find("dh = ["), start);
   const auto path = folder.file("cell.toml", with_start);
-  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
+  const process::ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
   ASSERT_EQ(result.program->blocks.front().joints.size(), 6);
-  const CellFile file = read_cell(path);
-  for (const BlockResult& row : result.program->blocks) {
+  const cell::CellFile file = cell::read_cell(path);
+  for (const process::BlockResult& row : result.program->blocks) {
     const program::Block& block = result.program->program.blocks[row.force.block];
     const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));
     EXPECT_LE((pose.tip_m - block.end.tip_m).norm(), 1e-9);
@@ -320,7 +323,7 @@ TEST(RunForces, SweepsAboutTheToolsAxis) {
   static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
   std::string text = single_cut();
   text += "[robot]\ncell = \"cell.toml\"\njoints_deg = [0, -60, 90, 0, 60, 0]\n";
-  const auto json = nlohmann::json::parse(forces_json(run_forces(folder.file("forces.toml", text), {}, {})));
+  const auto json = nlohmann::json::parse(process::forces_json(run_forces(folder.file("forces.toml", text), {}, {})));
   const nlohmann::json& sweep = json["spindle_rotation"];
   const double used_deg = sweep["used_deg"];
   double nearest_deg = 360.0;

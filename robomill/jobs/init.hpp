@@ -26,7 +26,7 @@ struct InitOptions {
   Template kind = Template::job;
   std::filesystem::path file = {};  ///< where the document is to stand; a folder or nothing: KIND.toml there
   std::filesystem::path data = {};  ///< a folder with records of hits; nothing: that of `file`
-  std::string robot = {};           ///< of a cell: one of known_arms(); nothing: that of the template
+  std::string robot = {};           ///< of a cell: one of cell::known_arms(); nothing: that of the template
   bool example = false;             ///< made up such that it runs as it is; without records of the folder
 };
 

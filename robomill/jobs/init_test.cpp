@@ -18,14 +18,13 @@
 #include <tuple>
 #include <vector>
 
+#include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_edit.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/files/forces_toml.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/predict.hpp"
@@ -33,6 +32,7 @@
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
+#include "robomill/process/files/forces_toml.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
@@ -66,13 +66,13 @@ void read(Template kind, const io::TomlSource& source) {
       break;
     }
     case Template::cell:
-      static_cast<void>(read_cell(source));
+      static_cast<void>(cell::read_cell(source));
       break;
     case Template::assembly:
       static_cast<void>(coupling::read_assembly(source));
       break;
     case Template::forces:
-      static_cast<void>(read_forces(source));
+      static_cast<void>(process::read_forces(source));
       break;
     case Template::monitor:
       static_cast<void>(monitor::read_monitor(source));
@@ -202,7 +202,8 @@ TEST_F(Init, ForcesAssemblyAndCellRun) {
   static_cast<void>(made({.kind = Template::assembly, .example = true}));
   EXPECT_FALSE(predict_tip(at("assembly.toml")).peaks.empty());
   static_cast<void>(made({.kind = Template::cell, .example = true}));
-  const SmoothResult smoothed = run_smooth({.program = folder_.file("part.ngc", program), .cell = at("cell.toml")});
+  const process::SmoothResult smoothed =
+      run_smooth({.program = folder_.file("part.ngc", program), .cell = at("cell.toml")});
   EXPECT_TRUE(smoothed.holds());
 }
 
@@ -481,18 +482,18 @@ TEST_F(Init, HitsTakeSoundWithoutNames) {
 }
 
 TEST_F(Init, EveryKnownArmMakesACell) {
-  for (const KnownArm& arm : known_arms()) {
+  for (const cell::KnownArm& arm : cell::known_arms()) {
     const InitFiles files = made({.kind = Template::cell, .robot = arm.name, .example = true});
     EXPECT_NO_THROW((void)run_smooth({.program = folder_.file("part.ngc", program), .cell = at("cell.toml")}))
         << arm.name;
     // The lists that stand behind a # are the arm's own, and exceed no limit where they are taken.
     std::string text = files.files.front().text;
-    const CellFile own = read_cell(io::TomlSource("cell.toml", text));
+    const cell::CellFile own = cell::read_cell(io::TomlSource("cell.toml", text));
     for (const char* key : {"joint_max_velocity_deg_per_s", "joint_max_acceleration_deg_per_s2",
                             "joint_max_jerk_deg_per_s3", "joint_stiffness_n_m_per_rad"}) {
       text = test_support::replaced(text, fmt::format("\n# {} = [", key), fmt::format("\n{} = [", key));
     }
-    const CellFile taken = read_cell(io::TomlSource("cell.toml", text));
+    const cell::CellFile taken = cell::read_cell(io::TomlSource("cell.toml", text));
     for (std::size_t k = 0; k < 6; ++k) {
       const robot::Joint &ours = taken.cell.arm.joints[k], &theirs = own.cell.arm.joints[k];
       for (const auto value : {&robot::Joint::max_velocity, &robot::Joint::max_acceleration, &robot::Joint::max_jerk,
@@ -513,13 +514,13 @@ TEST_F(Init, EveryKnownArmMakesACell) {
 // A placement and a length of data/cells are shown, and not taken.
 TEST_F(Init, ACellOfAKnownArmAsksWhereItStands) {
   static_cast<void>(made({.kind = Template::cell, .robot = "ur-5e"}));
-  EXPECT_NE(test::rejection([&] { (void)read_cell(at("cell.toml")); }).find("workpiece.origin_mm: is missing"),
+  EXPECT_NE(test::rejection([&] { (void)cell::read_cell(at("cell.toml")); }).find("workpiece.origin_mm: is missing"),
             std::string::npos);
   std::string text = io::with_setting(slurp(at("cell.toml")), {"workpiece.origin_mm", "[-500, -133, 0]"});
-  const std::string length = test::rejection([&] { (void)read_cell(io::TomlSource("cell.toml", text)); });
+  const std::string length = test::rejection([&] { (void)cell::read_cell(io::TomlSource("cell.toml", text)); });
   EXPECT_NE(length.find("tool.length_mm: is missing"), std::string::npos) << length;
   text = io::with_setting(text, {"tool.length_mm", "150"});
-  EXPECT_EQ(read_cell(io::TomlSource("cell.toml", text)).model, "ur-5e");
+  EXPECT_EQ(cell::read_cell(io::TomlSource("cell.toml", text)).model, "ur-5e");
 }
 
 // Which hits were made is known; what the other direction is like is not.

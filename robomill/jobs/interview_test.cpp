@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/files/shop_units.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
@@ -317,7 +317,8 @@ TEST_F(Asked, NamesRobotsAndMaterials) {
     return text;
   };
   const std::string robot = question(Template::cell, "Robot, one of\n");
-  for (const KnownArm& arm : known_arms()) EXPECT_NE(robot.find(" " + arm.name), std::string::npos) << robot;
+  for (const cell::KnownArm& arm : cell::known_arms())
+    EXPECT_NE(robot.find(" " + arm.name), std::string::npos) << robot;
   const std::string material = question(Template::lobes, "Material of the part, one of\n");
   for (const cutting::Material& one : cutting::materials()) {
     const bool named = material.find(" " + one.name + ",") != std::string::npos ||

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/files/posture_json.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/in_words.hpp"
-#include "robomill/jobs/files/posture_json.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/stability/files/lobes_csv.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
@@ -72,7 +72,7 @@ std::string lobes_document(const LobesJobResult& result) {
   if (result.sweep) return stability::sweep_json(*result.sweep);
   if (result.comparison) return stability::comparison_json(*result.comparison);
   io::Json json = stability::lobes_object(result.lobes, result.uncertain, result.surface);
-  if (result.cut.posture) json["posture"] = posture_object(*result.cut.posture);
+  if (result.cut.posture) json["posture"] = cell::posture_object(*result.cut.posture);
   return io::dump(json);
 }
 

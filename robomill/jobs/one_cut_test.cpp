@@ -106,7 +106,7 @@ Eigen::Vector3d mean_force(const simulation::Simulation& s, double speed_rad_per
 /// What lobes --at, simulate and forces say of one point.
 void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, const stability::OperatingPoint& at,
                     const Folder& folder, const std::string& seed) {
-  const ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
+  const process::ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
   const cutting::CuttingForce& force = forces.revolution->deflected.force;
   // Chips as a rigid cutter cuts them: vibration of teeth that differ, or that leave the cut, changes the mean.
   // Slices of its own choice are few enough for the vibration, and their steps raise the peak of a helix by up to 2 %.
@@ -123,9 +123,9 @@ void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, cons
   const Eigen::Vector3d mean = mean_force(in_time.simulation, at.spindle_speed_rad_per_s);
   EXPECT_LE((mean - force.mean_n).norm(), 0.01 * force.rms_n.norm()) << seed << ": simulate's mean force";
   // Means over a degree, as forces gives them, are lower where the peak is sharp.
-  const cutting::Engagement engagement = cutting::engage(forces.file.cutter, forces.file.cut);
-  const cutting::CuttingForce fine = cutting::cutting_force(forces.file.cutter, engagement, forces.file.coefficients,
-                                                            forces.file.motion, {.steps = 3600});
+  const cutting::Engagement engagement = cutting::engage(forces.cut.cutter, forces.cut.cut);
+  const cutting::CuttingForce fine = cutting::cutting_force(forces.cut.cutter, engagement, forces.cut.coefficients,
+                                                            forces.cut.motion, {.steps = 3600});
   EXPECT_NEAR(fine.peak_force_n, force.peak_force_n, 0.02 * force.peak_force_n) << seed << ": peak force";
   expect_within(in_time.simulation.vibrating_peak_force_n, fine.peak_force_n, seed + ": simulate's peak force");
 }
@@ -164,7 +164,7 @@ TEST(OneCut, EveryVerbSaysTheSame) {
           {.spindle_speed_rad_per_s = at.spindle_speed_rad_per_s, .axial_depth_m = op.limit_depth_m});
       expect_within(op.chatter_frequency_hz, limit.chatter_frequency_hz, seed + ": chatter frequency at the limit");
     }
-    const ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
+    const process::ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
     const cutting::CuttingForce& force = forces.revolution->deflected.force;
     expect_within(op.torque_n_m, force.mean_torque_n_m, seed + ": mean torque");
     expect_within(op.power_w, force.power_w, seed + ": mean power");

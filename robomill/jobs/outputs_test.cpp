@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "robomill/jobs/cell_check.hpp"
+#include "robomill/cell/check.hpp"
 #include "robomill/jobs/coefficients.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/tools.hpp"
+#include "robomill/process/forces.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -55,12 +55,12 @@ TEST(Outputs, SayWhyAnAnswerWasNotReached) {
   tools.tools[1].no_cut = "too deep";
   EXPECT_NE(shortfall(tools), "");
 
-  CellCheck check;
+  cell::CellCheck check;
   EXPECT_EQ(shortfall(check), "");
   check.placement.no_way = "between blocks 3 and 4";
   EXPECT_NE(shortfall(check), "");
 
-  ForcesResult forces;
+  process::ForcesResult forces;
   EXPECT_EQ(shortfall(forces), "");
   forces.revolution.emplace();
   forces.revolution->deflected.status = cutting::StaticDeflection::Status::lifts_off;

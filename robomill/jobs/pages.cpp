@@ -5,20 +5,19 @@
 
 #include <ctime>
 
+#include "robomill/cell/check.hpp"
+#include "robomill/cell/dynamics.hpp"
+#include "robomill/cell/files/check_json.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/cell_check.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/files/assumed.hpp"
-#include "robomill/jobs/files/cell_check_json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/modes.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/smooth.hpp"
@@ -27,6 +26,7 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/path/files/motion_json.hpp"
+#include "robomill/process/forces.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/simulation/files/simulation_files.hpp"
 #include "robomill/simulation/files/vibration_json.hpp"
@@ -76,10 +76,10 @@ page::Report page_of(const ModesResult& result) {
   return page;
 }
 
-page::Report page_of(const ModesOfPosture& result) {
+page::Report page_of(const cell::ModesOfPosture& result) {
   page::Report page = titled("Modes of a posture", summary(result));
-  page.modes = posture_modes_json(result);
-  page.warnings = posture_warnings(result);
+  page.modes = cell::posture_modes_json(result);
+  page.warnings = cell::posture_warnings(result);
   page.notes = result.notes;
   page.assumed = result.assumed;
   return page;
@@ -149,9 +149,9 @@ page::Report page_of(const SimulateResult& result) {
   return page;
 }
 
-page::Report page_of(const ForcesResult& result) {
+page::Report page_of(const process::ForcesResult& result) {
   page::Report page = titled("Cutting forces", summary(result));
-  page.forces = forces_json(result);
+  page.forces = process::forces_json(result);
   page.assumed = result.assumed;
   return page;
 }
@@ -172,13 +172,13 @@ page::Report page_of(const StiffnessResult& result) {
   return page;
 }
 
-page::Report page_of(const CellCheck& result) {
+page::Report page_of(const cell::CellCheck& result) {
   page::Report page = titled("Robot cell", summary(result));
-  page.cell = cell_check_json(result);
+  page.cell = cell::cell_check_json(result);
   return page;
 }
 
-page::Report page_of(const SmoothResult& result) {
+page::Report page_of(const process::SmoothResult& result) {
   page::Report page = titled("Smoothed program", summary(result));
   page.smooth = path::smooth_json(result.smoothed);
   if (!result.motions.empty()) page.motion = path::motion_json(result.outline, result.motions);

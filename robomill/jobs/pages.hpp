@@ -9,9 +9,11 @@
 
 // Method: robomill/jobs/README.md, "Pages (`pages.hpp`)"
 
-namespace robomill::jobs {
-
+namespace robomill::cell {
 struct CellCheck;
+}  // namespace robomill::cell
+
+namespace robomill::jobs {
 
 /// "2026-07-31 12:05 UTC, robomill 0.1.0".
 [[nodiscard]] ROBOMILL_API std::string created_now();
@@ -20,7 +22,7 @@ struct CellCheck;
 /// That of a plan: make_report.
 [[nodiscard]] ROBOMILL_API page::Report page_of(const FrfJobResult& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const ModesResult& result);
-[[nodiscard]] ROBOMILL_API page::Report page_of(const ModesOfPosture& result);
+[[nodiscard]] ROBOMILL_API page::Report page_of(const cell::ModesOfPosture& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const TipPrediction& result);
 /// @param cut  that the tools were tried in, if any
 [[nodiscard]] ROBOMILL_API page::Report page_of(const std::vector<ToolResult>& results,
@@ -31,11 +33,11 @@ struct CellCheck;
 [[nodiscard]] ROBOMILL_API page::Report page_of(const LobesJobResult& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const ExplainResult& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const SimulateResult& result);
-[[nodiscard]] ROBOMILL_API page::Report page_of(const ForcesResult& result);
+[[nodiscard]] ROBOMILL_API page::Report page_of(const process::ForcesResult& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const CoefficientsResult& result);
 [[nodiscard]] ROBOMILL_API page::Report page_of(const StiffnessResult& result);
-[[nodiscard]] ROBOMILL_API page::Report page_of(const CellCheck& result);
+[[nodiscard]] ROBOMILL_API page::Report page_of(const cell::CellCheck& result);
 /// With curves where the job recorded them.
-[[nodiscard]] ROBOMILL_API page::Report page_of(const SmoothResult& result);
+[[nodiscard]] ROBOMILL_API page::Report page_of(const process::SmoothResult& result);
 
 }  // namespace robomill::jobs

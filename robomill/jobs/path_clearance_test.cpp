@@ -1,4 +1,4 @@
-#include "robomill/jobs/path_clearance.hpp"
+#include "robomill/cell/clearance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/smooth.hpp"
@@ -49,13 +49,14 @@ const std::string pass = "G21 G90 G94\nS9000 M3\nG0 X0 Y0 Z20\nG1 Z0 F1200\nG1 X
 
 class PathChecked : public ::testing::Test {
  protected:
-  SmoothResult smooth(const std::string& cell_text, const char* output = "t.csv", const std::string& program = pass) {
+  process::SmoothResult smooth(const std::string& cell_text, const char* output = "t.csv",
+                               const std::string& program = pass) {
     SmoothJob job;
     job.cell = folder_.file("cell.toml", cell_text);
     job.program = folder_.file("part.ngc", program);
-    job.output = folder_.at(output);
-    job.record = false;
-    job.keep_violations = keep_;
+    job.options.output = folder_.at(output);
+    job.options.record = false;
+    job.options.keep_violations = keep_;
     return run_smooth(job);
   }
   [[nodiscard]] bool there(const char* name) const { return std::filesystem::exists(folder_.at(name)); }
@@ -65,7 +66,8 @@ class PathChecked : public ::testing::Test {
 
 // The spindle's axis runs from x = 1600 to 1680 mm: its side ends at 1730 mm, so a post at 1760 mm is 30 mm off there.
 TEST_F(PathChecked, ReportsTheLeastDistanceWithItsBodiesAndLine) {
-  const SmoothResult run = smooth(cell(geometry("box_from_mm = [1760, -200, 930], box_to_mm = [1800, 200, 1100]")));
+  const process::SmoothResult run =
+      smooth(cell(geometry("box_from_mm = [1760, -200, 930], box_to_mm = [1800, 200, 1100]")));
   ASSERT_TRUE(run.smoothed.clearance.has_value());
   const path::PathClearance& found = *run.smoothed.clearance;
   EXPECT_TRUE(found.clear());
@@ -85,7 +87,7 @@ TEST_F(PathChecked, ACollisionLeavesNoFile) {
       for (const char* output : {"t.csv", "t.src", "t.h5"}) {
         keep_ = keep;
         folder_.file(output, "of an earlier run");
-        const SmoothResult run = smooth(
+        const process::SmoothResult run = smooth(
             cell(geometry(std::string("box_from_mm = [") + from_mm + ", -200, 930], box_to_mm = [1800, 200, 1100]")),
             output);
         EXPECT_FALSE(run.holds());
@@ -102,20 +104,21 @@ TEST_F(PathChecked, ACollisionLeavesNoFile) {
 
 // A plate thinner than the way of one block stands across the middle of the pass: ends of blocks do not meet it.
 TEST_F(PathChecked, WhatStandsBetweenTheEndsOfBlocksIsSeen) {
-  const SmoothResult run = smooth(cell(geometry("box_from_mm = [1639, -400, 930], box_to_mm = [1641, -49, 1300]")));
+  const process::SmoothResult run =
+      smooth(cell(geometry("box_from_mm = [1639, -400, 930], box_to_mm = [1641, -49, 1300]")));
   ASSERT_TRUE(run.smoothed.clearance.has_value());
   EXPECT_FALSE(run.smoothed.clearance->clear());
   EXPECT_EQ(run.smoothed.clearance->line, 5U);
 }
 
 TEST_F(PathChecked, WithoutGeometryEveryHeaderAndSummarySaysSo) {
-  const SmoothResult run = smooth(cell(""), "t.src");
+  const process::SmoothResult run = smooth(cell(""), "t.src");
   ASSERT_TRUE(there("t.src")) << summary(run);
   EXPECT_FALSE(run.smoothed.clearance.has_value());
   EXPECT_NE(io::read_file(folder_.at("t.src")).find("; collisions: not checked"), std::string::npos);
   EXPECT_NE(summary(run).find("collisions not checked"), std::string::npos);
   EXPECT_NE(summary(run).find("geometry"), std::string::npos);
-  const SmoothResult checked =
+  const process::SmoothResult checked =
       smooth(cell(geometry("box_from_mm = [1760, -200, 930], box_to_mm = [1800, 200, 1100]")), "t.src");
   const std::string header = io::read_file(folder_.at("t.src"));
   EXPECT_NE(header.find("; collisions: clear: "), std::string::npos) << header.substr(0, 2000);
@@ -159,10 +162,10 @@ TEST(Makers, AreKnownByNamesOfArmsAndModels) {
                                     {"fanuc-m20ia", "FANUC"},
                                     {"staubli-rx160", "Stäubli"},
                                     {"yaskawa-gp25", "Yaskawa"}}) {
-    EXPECT_EQ(maker_of(name), maker) << name;
+    EXPECT_EQ(cell::maker_of(name), maker) << name;
   }
   for (const char* name : {"", "arm", "sour5", "krone", "robot", "my-cell", "surface"})
-    EXPECT_EQ(maker_of(name), "") << name;
+    EXPECT_EQ(cell::maker_of(name), "") << name;
 }
 
 // One output cannot carry out two speeds: no file unless it is asked for, and then its header says which are left out.
@@ -170,7 +173,7 @@ TEST_F(PathChecked, ARobotProgramOfSeveralSpindleSpeedsIsNotWritten) {
   std::string two = pass;
   two.replace(two.find("G0 Z20\nM5"), 6, "G0 Z20\nS7000\nG1 X0 F1200\nG0 Z20");
   EXPECT_TRUE(smooth(cell(""), "t.csv", two).smoothed.written);
-  const SmoothResult run = smooth(cell(""), "t.src", two);
+  const process::SmoothResult run = smooth(cell(""), "t.src", two);
   EXPECT_FALSE(run.smoothed.written);
   EXPECT_FALSE(there("t.src"));
   EXPECT_NE(shortfall(run).find("one spindle speed of several"), std::string::npos) << shortfall(run);

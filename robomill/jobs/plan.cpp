@@ -7,22 +7,23 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/cell/posture_choice.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/jobs/contradictions.hpp"
-#include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
 #include "robomill/jobs/plan_lobes.hpp"
-#include "robomill/jobs/posture_choice.hpp"
-#include "robomill/jobs/program_forces.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
+#include "robomill/process/blocks/dynamics.hpp"
+#include "robomill/process/files/cut_fields.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -115,7 +116,7 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
   if (!result.frfs) result.model = modal::read_modes(result.job.modes, result.notes);
   const modal::MissingDirections& directions = result.job.directions;
-  const auto assumed = complete_directions(result.model, measured, directions, result.job.file, "job");
+  const auto assumed = process::complete_directions(result.model, measured, directions, result.job.file, "job");
   if (assumed) add_assumed(result.assumed, {*assumed});
   if (!result.frfs) return;
   modal::FitOptions options;
@@ -145,9 +146,9 @@ void warn_of_spindle(PlanResult& result) {
   const std::vector<decision::SpindleCapacity>& curve = result.job.recommend.spindle;
   if (curve.empty()) return;
   std::size_t weak = 0;
-  SpindleLoad worst;
+  process::SpindleLoad worst;
   double most = 0.0;
-  for (const SpindleLoad& load : spindle_loads(*result.forces)) {
+  for (const process::SpindleLoad& load : process::spindle_loads(*result.forces)) {
     const decision::SpindleCapacity able = decision::capacity_at(curve, load.spindle_speed_rad_per_s);
     const bool inside = able.torque_n_m > 0.0 && able.power_w > 0.0;
     const double share = inside ? std::max(load.torque_n_m / able.torque_n_m, load.power_w / able.power_w) : HUGE_VAL;
@@ -166,32 +167,32 @@ void warn_of_spindle(PlanResult& result) {
   result.warnings.push_back(fmt::format(
       "The cut asks for more than the spindle has, {}{:.3g} N·m over a revolution and {:.3g} kW over {:.3g} s at "
       "{:.0f} rpm; {}.",
-      place, worst.torque_n_m, worst.power_w / units::kw, result.forces->file.power_time_s,
+      place, worst.torque_n_m, worst.power_w / units::kw, result.forces->cut.power_time_s,
       worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
 /// What the spindle has, where the whole program runs at one speed of its curve.
-std::optional<decision::SpindleCapacity> capacity_along(const ForcesResult& forces,
+std::optional<decision::SpindleCapacity> capacity_along(const process::ForcesResult& forces,
                                                         const std::vector<decision::SpindleCapacity>& curve) {
-  const std::vector<SpindleLoad> loads = spindle_loads(forces);
+  const std::vector<process::SpindleLoad> loads = process::spindle_loads(forces);
   if (!forces.program || curve.empty() || loads.empty()) return std::nullopt;
   const double speed = loads.front().spindle_speed_rad_per_s;
-  if (std::ranges::any_of(loads, [&](const SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
+  if (std::ranges::any_of(loads, [&](const process::SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
     return std::nullopt;
   }
   return decision::capacity_at(curve, speed);
 }
 
 /// The job's cell, for forces or for what smooths its program; only serial arms have forces.
-std::optional<CellFile> cell_of(const Job& job) {
+std::optional<cell::CellFile> cell_of(const Job& job) {
   if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
-  CellFile cell = read_cell(job.cell, job.forces.empty() ? Robots::any : Robots::serial);
-  if (!job.near_deg.empty()) ask_for_posture(cell, job.near_deg);
+  cell::CellFile cell = cell::read_cell(job.cell, job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
+  if (!job.near_deg.empty()) cell::ask_for_posture(cell, job.near_deg);
   return cell;
 }
 
 /// Whether the job's program is to be smoothed.
-bool wants_path(const Job& job, const std::optional<CellFile>& cell) {
+bool wants_path(const Job& job, const std::optional<cell::CellFile>& cell) {
   if (job.program.empty() || !cell) return false;
   if (path::has_smoothing(*cell->document)) return true;
   if (!job.forces.empty()) return false;
@@ -200,14 +201,14 @@ bool wants_path(const Job& job, const std::optional<CellFile>& cell) {
 }
 
 /// The program as the robot will run it.
-void smooth(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
-  SmoothJob smooth = {.program = result.job.program, .cell = cell.path, .place = false};
+void smooth(PlanResult& result, const cell::CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
+  SmoothJob smooth = {.program = result.job.program, .cell = cell.path, .options = {.place = false}};
   if (!folder.empty()) {
     io::make_folder(folder);
-    smooth.output = folder / "trajectory.csv";
+    smooth.options.output = folder / "trajectory.csv";
   }
   if (cell.geometry && !result.job.forces.empty()) {
-    smooth.cutter = read_forces(result.job.forces, ForcesJob::program).cutter;
+    smooth.options.cutter = process::read_forces(result.job.forces, process::ForcesJob::program).cutter;
   }
   result.path = run_smooth(smooth, cell, progress);
 }
@@ -215,7 +216,7 @@ void smooth(PlanResult& result, const CellFile& cell, const std::filesystem::pat
 /// Of the program that is to run, as it was or as it was decided.
 void warn_of_path(PlanResult& result) {
   if (!result.path || result.path->holds()) return;
-  const SmoothResult& path = *result.path;
+  const process::SmoothResult& path = *result.path;
   const char* removed = path.stale ? ", and the one of an earlier run was removed" : "";
   if (!path.clear()) {
     result.warnings.push_back(fmt::format("There is no trajectory{}. On its way {}.", removed,
@@ -227,26 +228,27 @@ void warn_of_path(PlanResult& result) {
       path.first().summary.check.violations(), removed));
 }
 
-/// Where the robot stands along a program: as the smoothed path has it, where there is one.
-ProgramRun program_run(const PlanResult& result) {
-  ProgramRun run = {.keep_cuts = true, .deflect = true};
-  if (result.path && !result.path->block_joints.empty()) {
-    run.reading = result.path->reading;
-    run.joints = result.path->block_joints;
+/// Forces along the program, the robot as the smoothed path has it, where there is one.
+process::ForcesResult forces_along(const PlanResult& result, const process::ForcesFile& file,
+                                   const std::optional<cell::CellFile>& cell, Progress& progress) {
+  process::ProgramRun run = {.keep_cuts = true, .deflect = true};
+  if (!result.path || result.path->block_joints.empty()) {
+    return run_forces_along(file, result.job.program, cell, run, {}, progress);
   }
-  return run;
+  run.joints = result.path->block_joints;
+  return run_forces_along(file, result.job.program, cell, run, result.path->reading, progress);
 }
 
 /// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
 /// cell's arm.
-DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& progress) {
+process::DynamicsAt dynamics_along(PlanResult& result, const cell::Cell& cell, Progress& progress) {
   const auto assume = [&](const char* taken) {
     result.assumed.push_back({.what = "Dynamics along the program",
                               .taken = taken,
                               .key = "postures",
                               .file = cell.path.filename().string()});
   };
-  if (!result.forces->file.dynamics.modes.empty()) {
+  if (!result.forces->cut.dynamics.modes.empty()) {
     result.notes.emplace_back("[dynamics] of forces.toml takes no part in the stability of the program's blocks.");
   }
   if (!cell.postures.empty() || !result.job.has_structure()) {
@@ -256,20 +258,22 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
     } else if (cell.postures.empty()) {
       assume("those of the cell's arm alone; nothing was measured");
     }
-    return dynamics_of_cell(cell, pushed_axes(*result.forces), result.warnings, result.notes, result.assumed, progress);
+    return process::dynamics_of_cell(cell, process::pushed_axes(*result.forces), result.warnings, result.notes,
+                                     result.assumed, progress);
   }
   assume("the job's, the same in every posture, in the robot's base axes");
-  return constant_dynamics(result.model);
+  return process::constant_dynamics(result.model);
 }
 
 /// The stability of every block, and the conditions to cut the program at.
-void judge(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
+void judge(PlanResult& result, const cell::Cell& cell, const std::filesystem::path& folder, Progress& progress) {
   const LobesFile& cut = result.cut;
-  const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
-                                                       !cut.problem.workpiece_dynamics.modes.empty()};
-  const DynamicsAt dynamics = dynamics_along(result, cell, progress);
+  const process::BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() ||
+                                                                !cut.workpiece_frf.empty() ||
+                                                                !cut.problem.workpiece_dynamics.modes.empty()};
+  const process::DynamicsAt dynamics = dynamics_along(result, cell, progress);
   result.judging = {.dynamics = dynamics, .options = options};
-  result.blocks = judge_blocks(*result.forces, dynamics, options, progress);
+  result.blocks = process::judge_blocks(*result.forces, dynamics, options, progress);
   if (result.job.decide.free.empty()) return;
   if (result.blocks->cutting == 0) {
     result.notes.emplace_back("No block of the program cuts: there are no conditions to decide.");
@@ -279,17 +283,18 @@ void judge(PlanResult& result, const CellFile& cell, const std::filesystem::path
 }
 
 /// Forces, and with a program and a robot the stability of every block and the conditions to cut it at.
-void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, const std::filesystem::path& folder,
+void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cell, const std::filesystem::path& folder,
                     Progress& progress) {
   if (result.job.forces.empty()) return;
   const bool along = !result.job.program.empty();
-  ForcesFile file = read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution);
+  const process::ForcesFile file =
+      process::read_forces(result.job.forces, along ? process::ForcesJob::program : process::ForcesJob::revolution);
   if (result.recommends()) append(result.warnings, contradictions(result.cut, file));
   append(result.warnings, contradictions(result.job, file));
   if (!result.job.judges_blocks()) {
-    result.forces = run_forces(std::move(file), result.job.program, cell, progress);
+    result.forces = run_forces(file, result.job.program, cell, progress);
   } else {
-    result.forces = run_forces_with(std::move(file), result.job.program, cell, program_run(result), progress);
+    result.forces = forces_along(result, file, cell, progress);
   }
   const bool usable = !result.fit || result.fit->usable();
   if (result.job.judges_blocks() && usable) judge(result, *cell, folder, progress);
@@ -327,7 +332,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   result.job.near_deg = near_deg;
   // Everything that is quick to reject is read before the long work starts.
   if (result.recommends()) read_cut(result);
-  const std::optional<CellFile> cell = cell_of(result.job);
+  const std::optional<cell::CellFile> cell = cell_of(result.job);
   if (cell && result.job.forces.empty())
     append_warnings(cell->notes, result.warnings);  // else they come with the forces
   const bool with_path = wants_path(result.job, cell);
@@ -370,6 +375,17 @@ PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed, P
   return result;
 }
 
+process::JudgedProgram judged_program(const PlanResult& result) {
+  if (!result.forces || !result.blocks || !result.judging || !result.forces->cell || !result.forces->program) {
+    throw InvalidInput("plan", "must be of a job with forces, a cell and a program whose blocks were judged");
+  }
+  process::JudgedProgram out = {.forces = *result.forces, .blocks = *result.blocks, .judging = *result.judging};
+  // Forces, joints and blocks are those of the decided program, which is turned already.
+  if (result.decision) out.gamma_offset_rad = result.decision->gamma_offset_rad;
+  if (result.decision && result.decision->gamma_map) out.map_blocks = result.decision->gamma_map->block;
+  return out;
+}
+
 bool collisions_checked(const PlanResult& result) {
   if (result.path) return result.path->smoothed.clearance.has_value();
   return result.decision && result.decision->collisions_checked;
@@ -377,7 +393,7 @@ bool collisions_checked(const PlanResult& result) {
 
 bool reached(const PlanResult& result) {
   if (result.decision && !result.decision->collision.empty()) return false;
-  if (result.decision && result.decision->status == DecideResult::Status::infeasible) return false;
+  if (result.decision && result.decision->status == process::DecideResult::Status::infeasible) return false;
   if (result.path && !result.path->holds()) return false;
   if (result.blocks && !result.recommends()) return true;  // an unstable block is an answer
   return result.recommendation.status == decision::Recommendation::Status::found;

@@ -8,11 +8,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
-#include "robomill/jobs/blocks.hpp"
-#include "robomill/jobs/decide.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
@@ -20,6 +17,10 @@
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
 #include "robomill/page/report.hpp"
+#include "robomill/process/blocks.hpp"
+#include "robomill/process/decide.hpp"
+#include "robomill/process/forces.hpp"
+#include "robomill/process/turned.hpp"
 #include "robomill/program/files/rewrite.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
@@ -43,12 +44,6 @@ struct FeedDirections {
   Eigen::VectorXd limit_at_speed_m = {};  ///< length n, at the recommended speed; empty where none was recommended
 };
 
-/// How the blocks of a program were judged.
-struct BlocksJudging {
-  DynamicsAt dynamics = {};
-  BlocksOptions options = {};
-};
-
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
   Job job;
@@ -65,16 +60,16 @@ struct PlanResult {
   std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
   std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
-  std::optional<ForcesResult> forces;    ///< of a job that asks for them
-  std::optional<ProgramBlocks> blocks;   ///< of a job with forces, a cell and a program
-  std::optional<BlocksJudging> judging;  ///< … how they were judged
+  std::optional<process::ForcesResult> forces;    ///< of a job that asks for them
+  std::optional<process::ProgramBlocks> blocks;   ///< of a job with forces, a cell and a program
+  std::optional<process::BlocksJudging> judging;  ///< … how they were judged
   /// Of a job that judges blocks and leaves something free. Where it found conditions, forces, blocks and path are
   /// those of the decided program.
-  std::optional<DecideResult> decision;
+  std::optional<process::DecideResult> decision;
   std::optional<program::Rewritten> program_out;  ///< the decided program in its dialect
   std::string program_name;                       ///< … and its file's name
   std::optional<PlannedMonitor> monitor;          ///< of that program
-  std::optional<SmoothResult> path;               ///< of a job with a program and a cell with [smoothing]
+  std::optional<process::SmoothResult> path;      ///< of a job with a program and a cell with [smoothing]
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
@@ -107,6 +102,10 @@ inline constexpr std::uint64_t default_seed = 1;
 /// @throws InvalidInput as run_job(), and where the modes do not describe the FRFs; Interrupted
 [[nodiscard]] ROBOMILL_API PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed,
                                                     Progress& progress = Progress::none());
+
+/// The blocks of a plan's program, for judge_turned. They refer to the plan.
+/// @throws InvalidInput if the plan has no judged blocks
+[[nodiscard]] ROBOMILL_API process::JudgedProgram judged_program(const PlanResult& result);
 
 /// Whether the way of the program that is to run was checked for collisions: along its trajectory, or without one from
 /// block to block.

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "robomill/io/samples.hpp"
-#include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/jobs/files/assumed.hpp"
+#include "robomill/process/decide/motion_loads.hpp"
 
 namespace robomill::jobs {
 
-void gather_assumed(PlanResult& result, const CellFile* cell) {
+void gather_assumed(PlanResult& result, const cell::Cell* cell) {
   std::vector<Assumption> of_job;
   if (result.recommends()) {
     if (result.job.recommend.max_axial_depth_m <= 0.0) {
@@ -25,7 +25,7 @@ void gather_assumed(PlanResult& result, const CellFile* cell) {
   if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
   if (result.forces) add_assumed(result.assumed, result.forces->assumed);
   if (result.path) add_assumed(result.assumed, result.path->smoothed.assumed);
-  if (cell != nullptr && result.blocks && !cell->end_effector.mass_kg && knows_torques(*cell)) {
+  if (cell != nullptr && result.blocks && !cell->end_effector.mass_kg && process::knows_torques(*cell)) {
     // What the drives bear is looked at, without the spindle's weight.
     add_assumed(result.assumed, {{.what = "Mass on the flange",
                                   .taken = "none",
@@ -33,7 +33,7 @@ void gather_assumed(PlanResult& result, const CellFile* cell) {
                                   .file = cell->path.filename().string()}});
   }
   if (cell == nullptr || result.job.program.empty()) return;
-  const Assumption unchecked = unchecked_collisions(*cell);
+  const Assumption unchecked = process::unchecked_collisions(*cell);
   std::erase(result.assumed, unchecked);
   if (!collisions_checked(result)) result.assumed.push_back(unchecked);
 }

@@ -12,23 +12,23 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/blocks/stand_at.hpp"
-#include "robomill/jobs/decide/block_times.hpp"
-#include "robomill/jobs/decide/motion_loads.hpp"
-#include "robomill/jobs/files/scratch_program.hpp"
-#include "robomill/jobs/program_forces.hpp"
+#include "robomill/process/blocks/stand_at.hpp"
+#include "robomill/process/decide/block_times.hpp"
+#include "robomill/process/decide/motion_loads.hpp"
+#include "robomill/robot/inverse.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-bool leans(const DecideResult& decision) {
-  return std::ranges::any_of(decision.stretches,
-                             [](const DecidedLines& lines) { return lines.lead_rad != 0.0 || lines.tilt_rad != 0.0; });
+bool leans(const process::DecideResult& decision) {
+  return std::ranges::any_of(decision.stretches, [](const process::DecidedLines& lines) {
+    return lines.lead_rad != 0.0 || lines.tilt_rad != 0.0;
+  });
 }
 
-bool turns(const DecideResult& decision) {
+bool turns(const process::DecideResult& decision) {
   return std::ranges::any_of(decision.gamma_offset_rad, [](double turn) { return turn != 0.0; });
 }
 
@@ -51,7 +51,7 @@ std::string checked_text(const PlanResult& result, Checked checked) {
 }
 
 std::vector<std::string> header_of(const PlanResult& result, Checked checked) {
-  const DecideResult& decision = *result.decision;
+  const process::DecideResult& decision = *result.decision;
   std::vector<std::string> out = {
       fmt::format("Spindle speeds and feeds by robomill {}, from {}", ROBOMILL_VERSION,
                   result.job.program.filename().string()),
@@ -72,23 +72,23 @@ std::vector<std::string> header_of(const PlanResult& result, Checked checked) {
 }
 
 /// As the blocks were numbered: as the smoothed path read them, where there is one.
-program::ProgramReading reading_of(const PlanResult& result, const CellFile& cell) {
-  return result.path ? result.path->reading : program_reading(cell);
+program::ProgramReading reading_of(const PlanResult& result, const cell::Cell& cell) {
+  return result.path ? result.path->reading : cell::program_reading(cell);
 }
 
-void write_program(PlanResult& result, const CellFile& cell, Checked checked) {
+void write_program(PlanResult& result, const cell::Cell& cell, Checked checked) {
   result.program_out =
       program::rewrite_program(result.job.program, reading_of(result, cell), result.forces->program->program,
                                *result.decision->program, header_of(result, checked));
   result.program_name = "program" + result.job.program.extension().string();
 }
 
-/// A program as it is written, for a robot that is to run it.
+/// A program as its text says it, for a robot that is to run it.
 class WrittenProgram {
  public:
-  WrittenProgram(const std::filesystem::path& folder, const std::string& name, const std::string& text,
-                 const program::ProgramReading& reading, const program::Program& wanted)
-      : wanted_(wanted), file_(folder, name, text), read_(program::read_program(file_.path(), reading)) {
+  WrittenProgram(const std::string& name, const std::string& text, const program::ProgramReading& reading,
+                 const program::Program& wanted)
+      : wanted_(wanted), read_(program::read_program_text(text, name, reading)) {
     // A move that turns the tool may be read as several blocks, and rapids that run on as fewer.
     std::size_t next = 0;
     for (const program::Block& block : read_.blocks) {
@@ -102,7 +102,8 @@ class WrittenProgram {
       if (ends) next = std::min(k + 1, wanted.blocks.size() - 1);
     }
   }
-  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+  /// As it is read.
+  [[nodiscard]] const program::Program& read() const { return read_; }
   /// Of each block that is read the one that was wanted.
   [[nodiscard]] const std::vector<std::size_t>& block_of() const { return block_of_; }
   /// Of values at the wanted program's start and at each block's end those of the program that is read.
@@ -126,15 +127,15 @@ class WrittenProgram {
            (a.end.axis - b.end.axis).norm() <= same_axis;
   }
   const program::Program& wanted_;
-  ScratchProgram file_;
   program::Program read_;
   std::vector<std::size_t> block_of_ = {};
 };
 
 /// Where the machine starts and how the flange stands along a program, turned by γ from where it was along the one that
 /// was smoothed.
-path::Posture posture_of(const SmoothResult& smoothed, const WrittenProgram& written, const program::Program& program,
-                         const std::vector<double>& gamma_offset_rad, const CellFile& cell) {
+path::Posture posture_of(const process::SmoothResult& smoothed, const WrittenProgram& written,
+                         const program::Program& program, const std::vector<double>& gamma_offset_rad,
+                         const cell::Cell& cell) {
   const path::Posture& before = smoothed.posture.posture;
   path::Posture out = before;
   if (out.gamma_rad.empty()) out.gamma_rad = {cell.redundant_gamma_rad};
@@ -143,8 +144,8 @@ path::Posture posture_of(const SmoothResult& smoothed, const WrittenProgram& wri
     for (std::size_t i = 0; i < gamma_offset_rad.size(); ++i) out.gamma_rad[i] += gamma_offset_rad[i];
     out.gamma_rad = written.along(out.gamma_rad);
   }
-  const std::optional<Eigen::VectorXd> joints = stand_at(
-      cell.cell, spherical_wrist(cell.cell.arm),
+  const std::optional<Eigen::VectorXd> joints = process::stand_at(
+      cell.cell, robot::spherical_wrist(cell.cell.arm),
       {.tip_m = program.start.tip_m, .axis = program.start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
   if (!joints) {
     throw InvalidInput("gamma", out.gamma_rad.front() / units::deg, "°", "cannot be taken where the program starts");
@@ -154,61 +155,61 @@ path::Posture posture_of(const SmoothResult& smoothed, const WrittenProgram& wri
 }
 
 /// The decided program as the robot will run it.
-void smooth_decided(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
-  const DecideResult& decision = *result.decision;
-  const WrittenProgram written(folder, result.program_name, result.program_out->text, reading_of(result, cell),
+void smooth_decided(PlanResult& result, const cell::Cell& cell, const std::filesystem::path& folder,
+                    Progress& progress) {
+  const process::DecideResult& decision = *result.decision;
+  const WrittenProgram written(result.program_name, result.program_out->text, reading_of(result, cell),
                                *decision.program);
-  SmoothJob job = {.program = written.path(),
-                   .cell = cell.path,
-                   .place = false,
-                   .program_name = result.program_name,
-                   .posture = posture_of(*result.path, written, *decision.program, decision.gamma_offset_rad, cell)};
-  if (!folder.empty()) job.output = folder / "trajectory.csv";
-  job.cutter = result.forces->file.cutter;
-  result.path = run_smooth(job, cell, progress);
+  process::SmoothOptions options = {
+      .place = false,
+      .posture = posture_of(*result.path, written, *decision.program, decision.gamma_offset_rad, cell),
+      .cutter = result.forces->cut.cutter};
+  if (!folder.empty()) options.output = folder / "trajectory.csv";
+  program::ProgramSource source(written.read());
+  result.path = process::smooth(source, result.program_name, cell, result.path->smoothing, options, progress);
 }
 
 /// A program that was run and judged, turned by γ.
 struct TurnedRun {
-  const ForcesResult& forces;
-  const ProgramBlocks& blocks;
+  const process::ForcesResult& forces;
+  const process::ProgramBlocks& blocks;
   const std::vector<double>& gamma_rad;
 };
 
 /// What the robot makes of a program, by the trajectory that it would be smoothed to.
-RobotRun robot_run(const PlanResult& result, const CellFile& cell, const std::filesystem::path& folder,
-                   const TurnedRun& run, Progress& progress) {
+process::RobotRun robot_run(const PlanResult& result, const cell::Cell& cell, const TurnedRun& run,
+                            Progress& progress) {
   const program::Program& program = run.forces.program->program;
   const std::string name = "program" + result.job.program.extension().string();
   const program::ProgramReading reading = reading_of(result, cell);
   const program::Rewritten text =
       program::rewrite_program(result.job.program, reading, result.forces->program->program, program);
-  const WrittenProgram written(folder, name, text.text, reading, program);
-  std::optional<MotionLoads> loads;
-  if (knows_torques(cell)) loads.emplace(cell, result.path->options.sample_period_s, written.block_of());
-  BlockTimes times(written.block_of());
-  const SmoothJob job = {.program = written.path(),
-                         .cell = cell.path,
-                         .record = false,
-                         .place = false,
-                         .program_name = name,
-                         .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
-                         .check_collisions = false,
-                         .observe = [&](std::span<const path::Sample> samples) {
-                           times.add(samples);
-                           if (loads) loads->add(samples);
-                         }};
-  const SmoothResult smoothed = run_smooth(job, cell, progress);
-  RobotRun out = {.time_s = smoothed.first().summary.duration_s, .block_time_s = times.times_s(), .torque_shares = {}};
+  const WrittenProgram written(name, text.text, reading, program);
+  const path::SmoothingFile& smoothing = result.path->smoothing;
+  std::optional<process::MotionLoads> loads;
+  if (process::knows_torques(cell)) loads.emplace(cell, smoothing.options.sample_period_s, written.block_of());
+  process::BlockTimes times(written.block_of());
+  const process::SmoothOptions options = {.record = false,
+                                          .place = false,
+                                          .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
+                                          .check_collisions = false,
+                                          .observe = [&](std::span<const path::Sample> samples) {
+                                            times.add(samples);
+                                            if (loads) loads->add(samples);
+                                          }};
+  program::ProgramSource source(written.read());
+  const process::SmoothResult smoothed = process::smooth(source, name, cell, smoothing, options, progress);
+  process::RobotRun out = {
+      .time_s = smoothed.first().summary.duration_s, .block_time_s = times.times_s(), .torque_shares = {}};
   if (loads) out.torque_shares = loads->shares(run.forces, run.blocks.joint_loads);
   return out;
 }
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.
-PlannedMonitor monitor_of(const PlanResult& result, const DynamicsAt& dynamics) {
+PlannedMonitor monitor_of(const PlanResult& result, const process::DynamicsAt& dynamics) {
   const program::Program& program = *result.decision->program;
-  MonitorPlan plan = {.teeth = result.forces->file.cutter.mill.teeth};
-  for (const DecidedLines& lines : result.decision->stretches) {
+  MonitorPlan plan = {.teeth = result.forces->cut.cutter.mill.teeth};
+  for (const process::DecidedLines& lines : result.decision->stretches) {
     plan.speeds.push_back({.spindle_speed_rad_per_s = lines.spindle_speed_rad_per_s,
                            .line = static_cast<int>(program.blocks[lines.first_block].line)});
   }
@@ -219,7 +220,7 @@ PlannedMonitor monitor_of(const PlanResult& result, const DynamicsAt& dynamics) 
 }
 
 /// No trajectory of a program that is not to be run.
-void withdraw(SmoothResult& path) {
+void withdraw(process::SmoothResult& path) {
   path.trajectory.reset();
   path.smoothed.written = false;
   std::error_code ignored;
@@ -227,10 +228,10 @@ void withdraw(SmoothResult& path) {
 }
 
 /// A spindle that a robot program switches on by an output runs at one speed: the one that its drive is set to.
-void take_one_speed(const CellFile& cell, DecideOptions& options, PlanResult& result) {
-  if (options.speed_changes == SpeedChanges::none) return;
+void take_one_speed(const cell::Cell& cell, process::DecideOptions& options, PlanResult& result) {
+  if (options.speed_changes == process::SpeedChanges::none) return;
   if (!options.speed_changes_given) {
-    options.speed_changes = SpeedChanges::none;
+    options.speed_changes = process::SpeedChanges::none;
     result.assumed.push_back({.what = "Changes of the spindle's speed",
                               .taken = "none: spindle.output of the cell only switches the spindle on",
                               .key = "decide.speed_changes",
@@ -245,28 +246,27 @@ void take_one_speed(const CellFile& cell, DecideOptions& options, PlanResult& re
 
 }  // namespace
 
-void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsAt& dynamics,
-                       const BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress) {
-  DecideProblem problem = {.forces = *result.forces,
-                           .blocks = *result.blocks,
-                           .dynamics = dynamics,
-                           .blocks_options = blocks,
-                           .machine = result.job.recommend,
-                           .finish = result.job.finish,
-                           .options = result.job.decide};
-  if (cell.end_effector.spindle.given() && problem.options.is_free(Free::spindle_speed)) {
+void decide_conditions(PlanResult& result, const cell::Cell& cell, const process::DynamicsAt& dynamics,
+                       const process::BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress) {
+  process::DecideProblem problem = {.forces = *result.forces,
+                                    .blocks = *result.blocks,
+                                    .dynamics = dynamics,
+                                    .blocks_options = blocks,
+                                    .machine = result.job.recommend,
+                                    .finish = result.job.finish,
+                                    .options = result.job.decide};
+  if (cell.end_effector.spindle.given() && problem.options.is_free(process::Free::spindle_speed)) {
     take_one_speed(cell, problem.options, result);
   }
   if (result.path) {
-    problem.max_tip_speed_m_per_s = result.path->options.max_velocity_m_per_s;
-    problem.robot_run = [&](const ForcesResult& run, const ProgramBlocks& judged,
+    problem.max_tip_speed_m_per_s = result.path->smoothing.options.max_velocity_m_per_s;
+    problem.robot_run = [&](const process::ForcesResult& run, const process::ProgramBlocks& judged,
                             const std::vector<double>& gamma_offset_rad) {
-      return robot_run(result, cell, folder, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad},
-                       progress);
+      return robot_run(result, cell, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad}, progress);
     };
   }
-  result.decision = decide(problem, progress);
-  if (result.decision->status != DecideResult::Status::found) {
+  result.decision = process::decide(problem, progress);
+  if (result.decision->status != process::DecideResult::Status::found) {
     if (result.path) withdraw(*result.path);
     return;
   }

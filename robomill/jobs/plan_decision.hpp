@@ -10,7 +10,7 @@ namespace robomill::jobs {
 /// that was read: forces, blocks, the trajectory and the program's text. Where no conditions keep every limit there is
 /// neither text nor trajectory.
 /// @param folder  as of run_job
-void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsAt& dynamics,
-                       const BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress);
+void decide_conditions(PlanResult& result, const cell::Cell& cell, const process::DynamicsAt& dynamics,
+                       const process::BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress);
 
 }  // namespace robomill::jobs

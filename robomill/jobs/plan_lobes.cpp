@@ -15,7 +15,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/test_cuts.hpp"
-#include "robomill/jobs/vibration_text.hpp"
+#include "robomill/process/vibration_text.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -70,7 +70,7 @@ void report_vibration(PlanResult& result) {
   constexpr double warned = 0.5;
   const double share = v.amplitude_m / op.feed_per_tooth_m;
   if (share < mentioned) return;
-  const std::string text = "Forced vibration at the recommended cut: " + vibration_text(v, share) + ".";
+  const std::string text = "Forced vibration at the recommended cut: " + process::vibration_text(v, share) + ".";
   if (share < warned) {
     result.notes.push_back(text);
     return;

@@ -112,7 +112,7 @@ page::Report report_of(const PlanResult& result, const std::vector<page::StageFi
   if (result.has_lobes()) report.lobes = io::dump(plan.at("lobes"));
   if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
   if (result.forces) report.forces = io::dump(plan.at("forces"));
-  if (result.blocks) report.blocks = blocks_json(*result.forces, *result.blocks);
+  if (result.blocks) report.blocks = process::blocks_json(*result.forces, *result.blocks);
   if (result.path) {
     report.smooth = io::dump(plan.at("path"));
     report.motion = path::motion_json(result.path->outline, result.path->motions);

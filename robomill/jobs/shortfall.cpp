@@ -2,22 +2,22 @@
 
 #include <algorithm>
 
+#include "robomill/cell/check.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/cell_check.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/outputs.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/tools.hpp"
+#include "robomill/process/forces.hpp"
 
 namespace robomill::jobs {
 
@@ -30,7 +30,7 @@ std::string shortfall(const ModesResult& result) {
   return result.fit.usable() ? "" : "the modes do not describe the FRFs";
 }
 
-std::string shortfall(const ModesOfPosture&) {
+std::string shortfall(const cell::ModesOfPosture&) {
   return {};
 }
 
@@ -63,9 +63,9 @@ std::string shortfall(const SimulateResult& result) {
              : "";
 }
 
-std::string shortfall(const ForcesResult& result) {
+std::string shortfall(const process::ForcesResult& result) {
   if (!result.revolution) return {};
-  const RevolutionForces& revolution = *result.revolution;
+  const process::RevolutionForces& revolution = *result.revolution;
   if (revolution.deflected.status != cutting::StaticDeflection::Status::found) {
     return "there is no static deflection of the robot";
   }
@@ -90,11 +90,11 @@ std::string shortfall(const StiffnessResult& result) {
   return seen ? "" : "these loads determine the stiffness of no joint";
 }
 
-std::string shortfall(const CellCheck& result) {
+std::string shortfall(const cell::CellCheck& result) {
   return result.placement.works() ? "" : "the tool does not come to the workpiece where it stands";
 }
 
-std::string shortfall(const SmoothResult& result) {
+std::string shortfall(const process::SmoothResult& result) {
   if (result.holds()) return {};
   std::string what = "the trajectory breaks limits";
   if (!result.clear()) {

@@ -41,7 +41,7 @@ void smooth_impeller(benchmark::State& state, const char* cell, path::Method met
   job.program = blade.path();
   job.cell = std::string(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/") + cell;
   job.method = method;
-  job.record = false;
+  job.options.record = false;
   path::Summary summary;
   for (auto _ : state) summary = jobs::run_smooth(job).first().summary;
   state.counters["blocks"] = static_cast<double>(summary.blocks);

@@ -13,6 +13,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/page/report.hpp"
@@ -67,7 +68,7 @@ class Smoothing : public ::testing::Test {
     SmoothJob out;
     out.cell = folder_.file("cell.toml", cell);
     out.program = folder_.file("part.ngc", program);
-    out.output = folder_.at("t.csv");
+    out.options.output = folder_.at("t.csv");
     return out;
   }
   struct Rows {
@@ -98,7 +99,7 @@ class Smoothing : public ::testing::Test {
 
 // What is promised holds of what is in the file, by differences of its numbers.
 TEST_F(Smoothing, TheFileKeepsTheLimitsOfEveryJoint) {
-  const SmoothResult result = run_smooth(job());
+  const process::SmoothResult result = run_smooth(job());
   ASSERT_TRUE(result.holds());
   ASSERT_TRUE(result.smoothed.written);
   const Rows file = read(folder_.at("t.csv"));
@@ -140,8 +141,8 @@ TEST_F(Smoothing, TurningAxesFollowTheMachineOfTheProgram) {
     const std::string program =
         "G21 G94 M428\nG0 X0 Y0 Z0 A30 C0\nG1 X20 C" + std::to_string(turn_deg) + " F300\nM30\n";
     SmoothJob turning = job(hybrid(), program);
-    turning.record = false;
-    const SmoothResult result = run_smooth(turning);
+    turning.options.record = false;
+    const process::SmoothResult result = run_smooth(turning);
     ASSERT_TRUE(result.holds()) << turn_deg;
     const Rows file = read(folder_.at("t.csv"));
     const double deg = units::deg;
@@ -162,7 +163,7 @@ TEST_F(Smoothing, TurningAxesFollowTheMachineOfTheProgram) {
 }
 
 TEST_F(Smoothing, ReportsWhatWasLeftOutAndWhatWasFound) {
-  const SmoothResult result = run_smooth(job());
+  const process::SmoothResult result = run_smooth(job());
   ASSERT_FALSE(result.smoothed.skipped.empty());
   EXPECT_EQ(result.smoothed.skipped.front().line, 2U);
   const auto json = nlohmann::json::parse(path::smooth_json(result.smoothed));
@@ -194,10 +195,10 @@ TEST_F(Smoothing, ReportsWhatWasLeftOutAndWhatWasFound) {
 TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
   SmoothJob broken = job(hybrid("", 4.0));
   broken.method = path::Method::no_joint_jerk;
-  const SmoothResult result = run_smooth(broken);
+  const process::SmoothResult result = run_smooth(broken);
   EXPECT_FALSE(result.holds());
   EXPECT_FALSE(result.smoothed.written);
-  EXPECT_FALSE(std::filesystem::exists(broken.output));
+  EXPECT_FALSE(std::filesystem::exists(broken.options.output));
   // The document says where, limit by limit.
   const auto json = nlohmann::json::parse(path::smooth_json(result.smoothed));
   std::size_t violations = 0;
@@ -211,23 +212,23 @@ TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
   violations += json["faulty_samples"].get<std::size_t>();
   EXPECT_GT(violations, 0U);
   EXPECT_EQ(violations, json["violations"]);
-  broken.keep_violations = true;
+  broken.options.keep_violations = true;
   EXPECT_TRUE(run_smooth(broken).smoothed.written);
-  EXPECT_TRUE(std::filesystem::exists(broken.output));
+  EXPECT_TRUE(std::filesystem::exists(broken.options.output));
   // The one that is there now is taken for a result no longer.
-  broken.keep_violations = false;
-  const SmoothResult again = run_smooth(broken);
-  EXPECT_FALSE(std::filesystem::exists(broken.output));
+  broken.options.keep_violations = false;
+  const process::SmoothResult again = run_smooth(broken);
+  EXPECT_FALSE(std::filesystem::exists(broken.options.output));
   ASSERT_FALSE(again.smoothed.notes.empty());
   EXPECT_EQ(again.smoothed.notes.back(), "The t.csv of an earlier run was removed: this one has none.");
 }
 
 TEST_F(Smoothing, ChecksTheMethodThatRuns) {
   SmoothJob trapezoid = job(hybrid("filters = 1\nmethod = \"paper\"\n"));
-  trapezoid.record = false;
-  trapezoid.keep_violations = true;
+  trapezoid.options.record = false;
+  trapezoid.options.keep_violations = true;
   trapezoid.compare = true;
-  const SmoothResult result = run_smooth(trapezoid);
+  const process::SmoothResult result = run_smooth(trapezoid);
   EXPECT_EQ(result.first().method, path::Method::paper);
   ASSERT_FALSE(result.smoothed.notes.empty());
   const std::string& note = result.smoothed.notes.front();
@@ -239,18 +240,19 @@ TEST_F(Smoothing, ChecksTheMethodThatRuns) {
   // … and a file whose own method could not.
   SmoothJob other = job(hybrid("filters = 1\n"));
   other.method = path::Method::paper;
-  other.keep_violations = true;
+  other.options.keep_violations = true;
   EXPECT_EQ(run_smooth(other).first().method, path::Method::paper);
 }
 
 TEST_F(Smoothing, SetsMethodsSideBySide) {
   SmoothJob both = job(hybrid("method = \"paper\"\ndrive_bandwidth_hz = 8\n"));
   both.compare = true;
-  both.keep_violations = true;
-  const SmoothResult result = run_smooth(both);
+  both.options.keep_violations = true;
+  const process::SmoothResult result = run_smooth(both);
   ASSERT_EQ(result.smoothed.methods.size(), 5U);
   EXPECT_EQ(result.first().method, path::Method::paper);
-  EXPECT_EQ(read(both.output).rows.size(), result.first().summary.samples) << "the file is of the method asked for";
+  EXPECT_EQ(read(both.options.output).rows.size(), result.first().summary.samples)
+      << "the file is of the method asked for";
   ASSERT_EQ(result.motions.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
     const path::SmoothedBy& by = result.smoothed.methods[i];
@@ -262,16 +264,16 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
     EXPECT_DOUBLE_EQ(std::max(behind.high.maxCoeff(), -behind.low.minCoeff()), by.tracking_error[3]);
   }
   // The drives do not depend on whether a page is wished.
-  both.record = false;
+  both.options.record = false;
   EXPECT_EQ(run_smooth(both).first().tracking_error, result.first().tracking_error);
 }
 
 TEST_F(Smoothing, InACellThatWasRead) {
   SmoothJob elsewhere = job();
-  CellFile cell = read_cell(elsewhere.cell, Robots::any);
-  const SmoothResult expected = run_smooth(elsewhere);
+  cell::CellFile cell = cell::read_cell(elsewhere.cell, cell::Robots::any);
+  const process::SmoothResult expected = run_smooth(elsewhere);
   elsewhere.cell = "elsewhere.toml";
-  const SmoothResult result = run_smooth(elsewhere, std::move(cell));
+  const process::SmoothResult result = run_smooth(elsewhere, std::move(cell));
   EXPECT_EQ(result.smoothed.cell, expected.smoothed.cell);
   EXPECT_EQ(result.first().summary.samples, expected.first().summary.samples);
   EXPECT_EQ(result.first().summary.duration_s, expected.first().summary.duration_s);
@@ -301,7 +303,7 @@ TEST_F(Smoothing, RejectsInTheUsersWords) {
   const std::string day = "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X10 F600\nG4 P4000\nG1 X0\n";
   EXPECT_NE(said(hybrid("max_duration_h = 1\n"), day).find("line 4): dwells for 1.111 h"), std::string::npos);
   SmoothJob program = job();
-  program.output = folder_.at("t.src");
+  program.options.output = folder_.at("t.src");
   EXPECT_NE(rejection([&] { static_cast<void>(run_smooth(program)); }).find("six revolute joints"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_.at("t.csv")));
 }
@@ -409,8 +411,8 @@ TEST(SmoothJob, BeginsAsAtHomeAndWhereAskedTo) {
   const robomill::test::Folder folder;
   const SmoothJob job = {.program = folder.file("p.ngc", "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X9 F600\n"),
                          .cell = folder.file("cell.toml", kuka()),
-                         .record = false};
-  const SmoothResult as_at_home = run_smooth(job);
+                         .options = {.record = false}};
+  const process::SmoothResult as_at_home = run_smooth(job);
   const path::Resemblance& like = *as_at_home.posture.resemblance;
   EXPECT_TRUE(like.known && like.shoulder && like.elbow && like.wrist);
   EXPECT_EQ(like.turns, 0);

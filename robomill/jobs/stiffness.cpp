@@ -7,6 +7,7 @@
 #include <string>
 
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/usual_arm.hpp"
@@ -35,7 +36,7 @@ void warn_of_loads(StiffnessResult& result) {
 StiffnessResult run_stiffness(const StiffnessJob& job) {
   StiffnessResult out;
   out.output = job.output;
-  out.cell = read_cell(job.cell);
+  out.cell = cell::read_cell(job.cell);
   const robot::Cell& cell = out.cell.cell;
   out.loads = robot::read_loads(job.loads, cell.arm);
   out.cell.notes.insert(out.cell.notes.end(), out.loads.notes.begin(), out.loads.notes.end());

@@ -6,7 +6,7 @@
 
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/cell/cell.hpp"
 #include "robomill/robot/files/loads_csv.hpp"
 #include "robomill/robot/identify.hpp"
 
@@ -21,7 +21,7 @@ struct StiffnessJob {
 };
 
 struct StiffnessResult {
-  CellFile cell;
+  cell::Cell cell;
   robot::LoadsFile loads;
   robot::IdentifiedStiffness found;
   std::vector<Assumption> assumed = {};

@@ -12,12 +12,12 @@
 
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/posture_choice.hpp"
 #include "robomill/io/append.hpp"
-#include "robomill/jobs/forces.hpp"
+#include "robomill/io/note_lines.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/posture_choice.hpp"
 #include "robomill/jobs/smooth.hpp"
-#include "robomill/jobs/summary_parts.hpp"
+#include "robomill/process/forces.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -39,7 +39,7 @@ void add_vibration(std::string& out, const simulation::Simulation& vibration) {
   append(out, "\n");
 }
 
-void add_revolution(std::string& out, const RevolutionForces& revolution, bool on_workpiece) {
+void add_revolution(std::string& out, const process::RevolutionForces& revolution, bool on_workpiece) {
   const double sign = on_workpiece ? -1.0 : 1.0;
   const cutting::CuttingForce& force = revolution.deflected.force;
   append(out, "{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
@@ -63,7 +63,8 @@ void add_revolution(std::string& out, const RevolutionForces& revolution, bool o
 }
 
 /// One block with its largest values.
-void add_block(std::string& out, const ProgramForces& program, const char* label, const BlockResult& row) {
+void add_block(std::string& out, const process::ProgramForces& program, const char* label,
+               const process::BlockResult& row) {
   const bool bends = row.joints.size() > 0;
   append(out, "{:<12} {:>6} {:>10.4g} {:>10.3g} {:>10.4g} {:>10.4g} {:>10} {:>10.3g}\n", label,
          program.program.blocks[row.force.block].line, row.force.peak_force_n, row.force.revolution_torque_n_m,
@@ -72,22 +73,25 @@ void add_block(std::string& out, const ProgramForces& program, const char* label
          row.force.axial_depth_m / units::mm);
 }
 
-void add_program(std::string& out, const ProgramForces& program, double power_time_s) {
+void add_program(std::string& out, const process::ProgramForces& program, double power_time_s) {
   const auto highest = [&](auto value) {
-    return *std::ranges::max_element(program.blocks, {}, [&](const BlockResult& row) { return value(row); });
+    return *std::ranges::max_element(program.blocks, {}, [&](const process::BlockResult& row) { return value(row); });
   };
   append(out, "{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),
          program.cutting_blocks(), program.removed_volume_m3 / units::mm3, program.seconds);
-  if (program.stock && !program.stock->assumed) append(out, "stock        {}\n", stock_text(program));
+  if (program.stock && !program.stock->assumed) append(out, "stock        {}\n", process::stock_text(program));
   append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N",
          "torque Nm", "power W", "power W", "bends µm", "depth mm");
   append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
          fmt::format("{:.4g} s", power_time_s), "1 turn", "");
-  add_block(out, program, "most force", highest([](const BlockResult& r) { return r.force.peak_force_n; }));
-  add_block(out, program, "most torque", highest([](const BlockResult& r) { return r.force.revolution_torque_n_m; }));
-  add_block(out, program, "most power", highest([](const BlockResult& r) { return r.force.sustained_power_w; }));
+  add_block(out, program, "most force", highest([](const process::BlockResult& r) { return r.force.peak_force_n; }));
+  add_block(out, program, "most torque",
+            highest([](const process::BlockResult& r) { return r.force.revolution_torque_n_m; }));
+  add_block(out, program, "most power",
+            highest([](const process::BlockResult& r) { return r.force.sustained_power_w; }));
   if (program.blocks.front().joints.size() == 0) return;
-  add_block(out, program, "most bend", highest([](const BlockResult& r) { return r.peak_deflection_m.norm(); }));
+  add_block(out, program, "most bend",
+            highest([](const process::BlockResult& r) { return r.peak_deflection_m.norm(); }));
 }
 
 /// "43 %", or "–" without a limit; "!" behind what breaks it.
@@ -126,7 +130,7 @@ void add_methods(std::string& out, const path::SmoothedProgram& smoothed) {
          "planned in");
   for (const path::SmoothedBy& by : smoothed.methods) {
     append(out, "{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", name_in(path::method_names, by.method),
-           by.summary.duration_s, by.summary.check.violations(), 100.0 * joint_share(by.summary.check),
+           by.summary.duration_s, by.summary.check.violations(), 100.0 * process::joint_share(by.summary.check),
            by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
   }
 }
@@ -184,15 +188,17 @@ std::string uncertain_text(std::size_t blocks) {
 }
 
 /// How many blocks chatter, first of all.
-void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlocks& blocks) {
-  const auto within = [](const BlockRow& row) { return row.cuts && !row.unstable() && row.stability_margin < 0.0; };
+void add_blocks(std::string& out, const process::ForcesResult& forces, const process::ProgramBlocks& blocks) {
+  const auto within = [](const process::BlockRow& row) {
+    return row.cuts && !row.unstable() && row.stability_margin < 0.0;
+  };
   append(out, "blocks       {} of {} that cut are unstable{}", blocks.unstable, blocks.cutting,
          uncertain_text(static_cast<std::size_t>(std::ranges::count_if(blocks.rows, within))));
   if (blocks.cutting == 0) {
     append(out, "\n");
     return;
   }
-  const BlockRow& worst = blocks.rows[blocks.worst];
+  const process::BlockRow& worst = blocks.rows[blocks.worst];
   append(out, "; the worst, gain margin {}, is in line {} (block {}): {:.4g} mm deep, ",
          std::isfinite(worst.cut.gain_margin) ? fmt::format("{:.3g}", worst.cut.gain_margin) : "without end",
          forces.program->program.blocks[blocks.worst].line, blocks.worst + 1, worst.axial_depth_m / units::mm);
@@ -209,22 +215,21 @@ void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlock
 constexpr std::size_t most_rejected = 6;
 
 void add_decision(std::string& out, const PlanResult& result) {
-  const DecideResult& decision = *result.decision;
-  const Outcome& before = decision.as_programmed;
-  const auto rpm = [](const Outcome& o) {
+  const process::DecideResult& decision = *result.decision;
+  const process::Outcome& before = decision.as_programmed;
+  const auto rpm = [](const process::Outcome& o) {
     const double low = o.lowest_spindle_speed_rad_per_s / units::rpm;
     const double high = o.highest_spindle_speed_rad_per_s / units::rpm;
     return low == high ? fmt::format("{:.0f} rpm", low) : fmt::format("{:.0f} to {:.0f} rpm", low, high);
   };
-  const auto add = [&](const char* word, const Outcome& o) {
+  const auto add = [&](const char* word, const process::Outcome& o) {
     append(out, "{} {}, {:.4g} s of cutting at the feeds{}\n", word, rpm(o), o.cutting_time_s,
            std::isfinite(o.robot_time_s) ? fmt::format(", {:.4g} s the robot's time for the program", o.robot_time_s)
                                          : "");
     append(out, "             least stability margin {:.2f} of the limits' 5 % quantile; {} blocks chatter{}\n",
            o.least_stability_margin, o.unstable_blocks, uncertain_text(o.uncertain_blocks));
-    for (const Violation& v : o.violations) {
-      append(out, "               {} in block {}\n",
-             limit_text({.limit = v.limit, .value = v.value, .allowed = v.allowed}), v.block + 1);
+    for (const process::Violation& v : o.violations) {
+      append(out, "               {} in block {}\n", process::limit_text(v), v.block + 1);
     }
   };
   add("as programmed", before);
@@ -245,9 +250,9 @@ void add_decision(std::string& out, const PlanResult& result) {
     append(out, "no conditions: {}\n", decision.reason);
   }
   for (std::size_t i = 0; i < std::min(most_rejected, decision.alternatives.size()); ++i) {
-    const RejectedAlternative& one = decision.alternatives[i];
+    const process::RejectedAlternative& one = decision.alternatives[i];
     append(out, "rejected      {:.0f} rpm: {}, block {}\n", one.speed.spindle_speed_rad_per_s / units::rpm,
-           limit_text(one.speed.stopped_by), one.block + 1);
+           process::limit_text(one.speed.stopped_by), one.block + 1);
   }
   if (decision.alternatives.size() > most_rejected) {
     append(out, "              {} more in plan.json\n", decision.alternatives.size() - most_rejected);
@@ -289,25 +294,25 @@ std::string summary(const PlanResult& result) {
     append(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
            count.not_compared);
   }
-  if (result.blocks) add_notes(out, block_warnings(*result.forces, *result.blocks), "warning      ");
-  if (result.forces) add_notes(out, result.forces->warnings, "warning      ");
-  add_notes(out, result.warnings, "warning      ");
-  add_notes(out, result.notes, "note         ");
-  if (result.blocks) add_notes(out, block_notes(*result.blocks), "note         ");
-  if (result.decision) add_notes(out, result.decision->notes, "note         ");
+  if (result.blocks) io::add_notes(out, process::block_warnings(*result.forces, *result.blocks), "warning      ");
+  if (result.forces) io::add_notes(out, result.forces->warnings, "warning      ");
+  io::add_notes(out, result.warnings, "warning      ");
+  io::add_notes(out, result.notes, "note         ");
+  if (result.blocks) io::add_notes(out, process::block_notes(*result.blocks), "note         ");
+  if (result.decision) io::add_notes(out, result.decision->notes, "note         ");
   return out + assumed_text(result.assumed);
 }
 
-std::string summary(const ForcesResult& result) {
+std::string summary(const process::ForcesResult& result) {
   std::string out;
-  if (result.revolution) add_revolution(out, *result.revolution, result.file.on_workpiece);
-  if (result.program) add_program(out, *result.program, result.file.power_time_s);
-  add_notes(out, result.warnings, "warning      ");
-  add_notes(out, result.notes, "note         ");
+  if (result.revolution) add_revolution(out, *result.revolution, result.cut.on_workpiece);
+  if (result.program) add_program(out, *result.program, result.cut.power_time_s);
+  io::add_notes(out, result.warnings, "warning      ");
+  io::add_notes(out, result.notes, "note         ");
   return out + assumed_text(result.assumed);
 }
 
-std::string summary(const SmoothResult& result) {
+std::string summary(const process::SmoothResult& result) {
   std::string out;
   const path::SmoothedBy& by = result.first();
   const path::Summary& run = by.summary;
@@ -317,9 +322,9 @@ std::string summary(const SmoothResult& result) {
   if (run.rounds > 1) append(out, ", {} rounds", run.rounds);
   append(out, "\n");
   if (result.smoothed.posture) {
-    append(
-        out, "starts at {}\n",
-        posture_text(*result.smoothed.posture, static_cast<int>(run.check.joints.size()), result.smoothed.prismatic));
+    append(out, "starts at {}\n",
+           cell::posture_text(*result.smoothed.posture, static_cast<int>(run.check.joints.size()),
+                              result.smoothed.prismatic));
   }
   append(out, "\n");
   add_check(out, by);
@@ -330,7 +335,7 @@ std::string summary(const SmoothResult& result) {
          result.smoothed.clearance ? printable(path::clearance_text(*result.smoothed.clearance)) : "not checked");
   for (const program::Skipped& item : result.smoothed.skipped)
     append(out, "skipped    line {}: {}\n", item.line, printable(item.what));
-  add_notes(out, result.smoothed.notes, "note       ");
+  io::add_notes(out, result.smoothed.notes, "note       ");
   return out + assumed_text(result.smoothed.assumed);
 }
 

@@ -8,20 +8,26 @@
 
 // Method: robomill/jobs/README.md, "Outputs"
 
+namespace robomill::cell {
+struct ModesOfPosture;
+}  // namespace robomill::cell
+
+namespace robomill::process {
+struct ForcesResult;
+struct SmoothResult;
+}  // namespace robomill::process
+
 namespace robomill::jobs {
 
 struct CoefficientsResult;
 struct ExplainResult;
-struct ForcesResult;
 struct FrfJobResult;
 struct JointResult;
 struct LobesFile;
 struct LobesJobResult;
-struct ModesOfPosture;
 struct ModesResult;
 struct PlanResult;
 struct SimulateResult;
-struct SmoothResult;
 struct StiffnessResult;
 struct TipPrediction;
 struct ToolResult;
@@ -32,7 +38,7 @@ struct ToolsResult;
 [[nodiscard]] ROBOMILL_API std::string summary(const PlanResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const FrfJobResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const ModesResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const ModesOfPosture& result);
+[[nodiscard]] ROBOMILL_API std::string summary(const cell::ModesOfPosture& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const TipPrediction& result);
 /// @param cut  that the tools were tried in, if any
 [[nodiscard]] ROBOMILL_API std::string summary(const std::vector<ToolResult>& results,
@@ -43,9 +49,9 @@ struct ToolsResult;
 [[nodiscard]] ROBOMILL_API std::string summary(const LobesJobResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const ExplainResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const SimulateResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const ForcesResult& result);
+[[nodiscard]] ROBOMILL_API std::string summary(const process::ForcesResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const CoefficientsResult& result);
 [[nodiscard]] ROBOMILL_API std::string summary(const StiffnessResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const SmoothResult& result);
+[[nodiscard]] ROBOMILL_API std::string summary(const process::SmoothResult& result);
 
 }  // namespace robomill::jobs

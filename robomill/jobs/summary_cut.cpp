@@ -9,13 +9,13 @@
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/io/note_lines.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/summary.hpp"
-#include "robomill/jobs/summary_parts.hpp"
 
 // A cut: its stability, its vibration, its coefficients.
 
@@ -247,7 +247,7 @@ std::string summary(const LobesJobResult& result) {
   } else {
     add_chart(out, result.lobes, result.surface);
   }
-  add_notes(out, result.cut.notes, "Note: ");
+  io::add_notes(out, result.cut.notes, "Note: ");
   const bool surface = result.surface.axial_depth_m.size() > 0;
   return out + assumed_text(assumed_of(result.cut, surface ? CutUse::motion : CutUse::stability));
 }
@@ -269,21 +269,21 @@ std::string summary(const ExplainResult& result) {
       io::append(out, "No peak is chatter of a known mode.\n");
       break;
   }
-  add_notes(out, result.notes, "Note: ");
+  io::add_notes(out, result.notes, "Note: ");
   if (!result.mechanism) {
     io::append(out, "Whether it is regenerative depends on the cut: give --lobes and --at.\n");
     return out;
   }
   io::append(out, "The cut: {} (|μ| = {:.5g}, without the delay {:.5g}).\n", to_string(result.mechanism->kind),
              result.mechanism->spectral_radius, result.mechanism->without_delay);
-  add_notes(out, result.cut->notes, "Note: ");
+  io::add_notes(out, result.cut->notes, "Note: ");
   return out + assumed_text(assumed_of(*result.cut, CutUse::stability));
 }
 
 std::string summary(const SimulateResult& result) {
   const simulation::Simulation& s = result.simulation;
   std::string out;
-  add_notes(out, result.cut.notes, "Note: ");
+  io::add_notes(out, result.cut.notes, "Note: ");
   add_fit(out, result.cut.frf, result.fit);
   add_fit(out, result.cut.workpiece_frf, result.workpiece_fit);
   io::append(out, "{:.6g} rpm, {:.4g} mm: {}{}", result.point.spindle_speed_rad_per_s / units::rpm,
@@ -321,8 +321,8 @@ std::string summary(const CoefficientsResult& result) {
                              group.radial.cutting_deviation_n_per_m2 / units::n_per_mm2));
     }
   }
-  add_notes(out, result.file.notes, "Note: ");
-  add_notes(out, fit.notes, "");
+  io::add_notes(out, result.file.notes, "Note: ");
+  io::add_notes(out, fit.notes, "");
   return out + assumed_text(result.assumed);
 }
 

@@ -8,16 +8,16 @@
 
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/io/note_lines.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/modes.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/summary.hpp"
-#include "robomill/jobs/summary_parts.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/weak_modes.hpp"
 
@@ -93,7 +93,7 @@ void add_lines(std::string& out, const char* what, const std::vector<double>& li
 void add_holder(std::string& out, const coupling::AssemblyFile& file) {
   if (!file.holder) return;
   add_lines(out, "Holder not reliable", file.holder->unreliable_hz);
-  add_notes(out, file.holder->notes, "Note: ");
+  io::add_notes(out, file.holder->notes, "Note: ");
 }
 
 /// What becomes of a tool in the cut.
@@ -140,15 +140,15 @@ std::string summary(const FrfJobResult& result) {
   io::append(out, "\nTrustworthy from {:.4g} Hz.", low_hz);
   if (std::isfinite(high_hz)) io::append(out, " Modes: robomill modes FILE --band {:.0f},{:.0f}", low_hz, high_hz);
   out += "\n";
-  add_notes(out, result.file.notes, "");
-  add_notes(out, result.frfs.notes, "");
+  io::add_notes(out, result.file.notes, "");
+  io::add_notes(out, result.frfs.notes, "");
   return out + assumed_text(result.file.assumed);
 }
 
 std::string summary(const ModesResult& result) {
   const modal::FitResult& fit = result.fit;
   std::string out;
-  add_notes(out, result.measured.notes, "Note: ");
+  io::add_notes(out, result.measured.notes, "Note: ");
   add_modes(out, fit.model, [&](int mode) {
     std::string bounds;
     for (const modal::FitBound bound : fit.bounds_of(mode)) bounds += fmt::format("  at {}", to_string(bound));
@@ -156,15 +156,15 @@ std::string summary(const ModesResult& result) {
   });
   io::append(out, "\n{:.4g} to {:.4g} Hz: relative error {:.4g}, mean relative error {:.4g}\n", fit.band_low_hz,
              fit.band_high_hz, fit.relative_error, fit.mean_relative_error);
-  add_notes(out, fit.warnings, "Warning: ");
+  io::add_notes(out, fit.warnings, "Warning: ");
   return out + assumed_text(result.measured.assumed);
 }
 
-std::string summary(const ModesOfPosture& result) {
+std::string summary(const cell::ModesOfPosture& result) {
   std::string out;
   add_modes(out, result.prediction.modes, [](int) { return std::string(); });
-  add_notes(out, posture_warnings(result), "Warning: ");
-  add_notes(out, result.notes, "Note: ");
+  io::add_notes(out, cell::posture_warnings(result), "Warning: ");
+  io::add_notes(out, result.notes, "Note: ");
   return out + assumed_text(result.assumed);
 }
 
@@ -184,8 +184,8 @@ std::string summary(const TipPrediction& result) {
   }
   add_lines(out, "Suspect", tip.suspect_hz);
   add_holder(out, file);
-  add_notes(out, file.notes, "Note: ");
-  add_notes(out, tip.notes, "Note: ");
+  io::add_notes(out, file.notes, "Note: ");
+  io::add_notes(out, tip.notes, "Note: ");
   return out + assumed_text(file.assumed);
 }
 
@@ -206,7 +206,7 @@ std::string summary(const std::vector<ToolResult>& results, const coupling::Asse
     io::append(out, "{:>10} {}\n", lowest, cut_text(tool));
   }
   add_holder(out, assembly);
-  add_notes(out, assembly.notes, "Note: ");
+  io::add_notes(out, assembly.notes, "Note: ");
   std::vector<Assumption> assumed = assembly.assumed;
   if (cut) add_assumed(assumed, assumed_of(*cut, CutUse::stability));
   return out + assumed_text(assumed);
@@ -231,8 +231,8 @@ std::string summary(const JointResult& result) {
   for (const coupling::JointKnowledge& knowledge : fit.knowledge) {
     if (!knowledge.note.empty()) io::append(out, "{}\n", knowledge.note);
   }
-  add_notes(out, fit.notes, "");
-  add_notes(out, result.notes, "Note: ");
+  io::add_notes(out, fit.notes, "");
+  io::add_notes(out, result.notes, "Note: ");
   return out + assumed_text(result.assumed);
 }
 
@@ -250,7 +250,7 @@ std::string summary(const StiffnessResult& result) {
   }
   io::append(out, "\n{} loads, residual {:.3g} mm (root mean square), R² = {:.6f}, {} iterations\n",
              found.residual_m.cols(), found.rms_m / units::mm, found.r_squared, found.iterations);
-  add_notes(out, result.cell.notes, "Note: ");
+  io::add_notes(out, result.cell.notes, "Note: ");
   return out + assumed_text(result.assumed);
 }
 

@@ -38,7 +38,7 @@ std::string peak_text(const stability::ExplainedPeak& peak, int teeth) {
       for (const stability::Explanation& reading : peak.others) {
         if (reading.likelihood_per_hz >= least) out += (out.empty() ? "" : " or ") + short_reading(reading, teeth);
       }
-      return out + ": cannot be told";
+      return out + ": ambiguous";
     }
     case stability::ExplainedPeak::State::unexplained:
       break;

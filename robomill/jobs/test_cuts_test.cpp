@@ -49,7 +49,7 @@ TEST(ExplainPeak, NamesThePeaksOfThePublishedCuts) {
 TEST(ExplainPeak, NamesNoReadingWhereAnotherIsAboutAsGood) {
   const Peak either = explain(543.67, 7000);
   EXPECT_EQ(either.kind, Kind::chatter);
-  EXPECT_EQ(either.text, "mode 8 or mode 7: cannot be told");
+  EXPECT_EQ(either.text, "mode 8 or mode 7: ambiguous");
   const Peak open = explain(540.9, 6500);
   EXPECT_EQ(open.kind, Kind::cut_or_chatter);
   EXPECT_EQ(open.text.find("5 × rotation or mode 7"), 0U) << open.text;

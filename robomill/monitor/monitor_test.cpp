@@ -147,7 +147,7 @@ TEST(ChatterMonitor, DistinguishesAGapFromAMissingSignal) {
   EXPECT_EQ(reason_of(2, 1, [](int c, float x) { return c == 0 ? nan : x; }), BlindReason::no_signal);
   EXPECT_EQ(reason_of(2, -1, [](int, float) { return infinity; }), BlindReason::no_signal);
   EXPECT_EQ(reason_of(2, -1, [](int, float) { return 0.0F; }), BlindReason::no_signal);
-  // A third of the hop lost is lived through.
+  // A hop of which a third is lost is judged.
   EXPECT_EQ(reason_of(1, -1, [i = 0](int, float x) mutable { return i++ % 3 == 0 ? nan : x; }), BlindReason::none);
 }
 

@@ -68,12 +68,13 @@ struct PostureChoice {
 /// from 5° or 50 mm on.
 [[nodiscard]] ROBOMILL_API std::string singularity_text(const robot::Configuration& configuration);
 
-/// Chooses where a machine starts and how the flange stands about the tool's axis, of all constant gammas and all ways
-/// to the first pose that go through with a margin of 0.05; where none has that much, with half of the largest margin
-/// there is. Of them those with home's shoulder, elbow and wrist come first, in this order, then those with the fewest
-/// whole turns away from home, then the one nearest to home, for which margin_for_home of the largest margin of its
-/// kind is given up at most. Without home the largest margin decides. Where no constant gamma goes through, gamma turns
-/// from block to block. The program is looked at in steps, finer near a singularity and wherever a joint moves far.
+/// Chooses where a machine starts and how the flange is turned about the tool's axis, of all constant gammas and all
+/// ways to the first pose that go through with a margin of 0.05; where none has that much, with half of the largest
+/// margin there is. Of them those with home's shoulder, elbow and wrist come first, in this order, then those with the
+/// fewest whole turns away from home, then the one nearest to home, for which margin_for_home of the largest margin of
+/// its kind is given up at most. Without home the largest margin decides. Where no constant gamma goes through, gamma
+/// turns from block to block. The program is looked at in steps, finer near a singularity and wherever a joint moves
+/// far.
 /// @throws InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one that gets
 ///     farthest ends, its line, joint and amount; or that the start cannot be taken
 [[nodiscard]] ROBOMILL_API PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,

@@ -29,7 +29,7 @@ struct Summary {
   CheckResult check = {};
 };
 
-/// Where a smoothed program begins and how it stands about the tool's axis.
+/// Where a smoothed program begins and how it is turned about the tool's axis.
 struct Posture {
   robot::Position6 start = robot::Position6::Zero();
   std::vector<double> gamma_rad = {};  ///< one for all, or one at the start and one at each block's end

@@ -15,6 +15,13 @@ bool ProgramSource::next(Block& out) {
   return true;
 }
 
+Remarks ProgramSource::remarks() const {
+  return {.skipped = program_.skipped,
+          .skipped_count = program_.skipped.size(),
+          .notes = program_.notes,
+          .assumed = program_.assumed};
+}
+
 Pose between(const Pose& from, const Pose& to, double share) {
   Pose pose;
   pose.tip_m = from.tip_m + share * (to.tip_m - from.tip_m);

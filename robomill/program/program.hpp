@@ -70,6 +70,14 @@ struct Skipped {
   std::string what;
 };
 
+/// What a reader left out, corrected or took for granted.
+struct Remarks {
+  std::vector<Skipped> skipped = {};    ///< in the order of the program; a reader may keep the first ones alone …
+  std::size_t skipped_count = 0;        ///< … of so many
+  std::vector<std::string> notes = {};  ///< sentences for the user: what was corrected
+  std::vector<Assumption> assumed = {};
+};
+
 /// An NC program as data.
 struct ROBOMILL_API Program {
   Pose start;                 ///< where the first block begins
@@ -97,6 +105,8 @@ class ROBOMILL_API Source {
   virtual bool next(Block& out) = 0;
   /// Begins anew with the first block.
   virtual void rewind() = 0;
+  /// Of what was read so far, in whichever pass came farthest.
+  [[nodiscard]] virtual Remarks remarks() const { return {}; }
 };
 
 /// A program in memory as a source.
@@ -107,6 +117,8 @@ class ROBOMILL_API ProgramSource final : public Source {
   [[nodiscard]] const Pose& start() const override { return program_.start; }
   bool next(Block& out) override;
   void rewind() override { next_ = 0; }
+  /// Of the whole program.
+  [[nodiscard]] Remarks remarks() const override;
 
  private:
   const Program& program_;

@@ -273,4 +273,12 @@ void SphericalWristInverse::add_wrists(const Elbow& elbow, InverseSolutions& out
   }
 }
 
+std::optional<SphericalWristInverse> spherical_wrist(const Arm& arm) {
+  try {
+    return SphericalWristInverse(arm);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace robomill::robot

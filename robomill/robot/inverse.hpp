@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
@@ -94,5 +95,8 @@ class ROBOMILL_API SphericalWristInverse {
   double angle_5_ = 0.0;             // of the wrist at zero
   bool perpendicular_ = true;
 };
+
+/// The closed form of an arm; none for one without a spherical wrist, or otherwise not as the form asks.
+[[nodiscard]] ROBOMILL_API std::optional<SphericalWristInverse> spherical_wrist(const Arm& arm);
 
 }  // namespace robomill::robot

@@ -241,7 +241,7 @@ std::string_view to_string(ExplainedPeak::State state) {
     case ExplainedPeak::State::named:
       return "named";
     case ExplainedPeak::State::ambiguous:
-      return "cannot be told";
+      return "ambiguous";
     case ExplainedPeak::State::unexplained:
       break;
   }
@@ -253,7 +253,7 @@ std::string_view to_string(PeakClassification::State state) {
     case PeakClassification::State::named:
       return "named";
     case PeakClassification::State::ambiguous:
-      return "cannot be told";
+      return "ambiguous";
     case PeakClassification::State::no_chatter:
       break;
   }

@@ -8,8 +8,9 @@
 #include <string>
 
 #include "robomill/base/progress.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/program_forces.hpp"
+#include "robomill/jobs/forces.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::test_support {
@@ -70,11 +71,11 @@ struct ProgramFiles {
 };
 
 /// Writes them and runs the program.
-inline jobs::ForcesResult forces_along(const test::Folder& folder, const ProgramFiles& files,
-                                       const jobs::ProgramRun& run) {
-  return jobs::run_forces_with(jobs::read_forces(folder.file("forces.toml", files.forces), jobs::ForcesJob::program),
-                               folder.file("part.ngc", files.program),
-                               jobs::read_cell(folder.file("cell.toml", files.cell)), run, Progress::none());
+inline process::ForcesResult forces_along(const test::Folder& folder, const ProgramFiles& files,
+                                          const process::ProgramRun& run) {
+  return jobs::run_forces_along(
+      process::read_forces(folder.file("forces.toml", files.forces), process::ForcesJob::program),
+      folder.file("part.ngc", files.program), cell::read_cell(folder.file("cell.toml", files.cell)), run);
 }
 
 }  // namespace robomill::test_support

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/decide.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/process/decide.hpp"
 #include "testing/jobs/program_files.hpp"
 #include "testing/support.hpp"
 
@@ -46,16 +46,16 @@ class ThreePasses : public ::testing::Test {
     return modal::modes_from_mass({{410, 0.03, 0.6 * mass}}, {{530, 0.03, 0.5 * mass}}, {{780, 0.03, 0.8 * mass}});
   }
   struct Judged {
-    ForcesResult forces;
-    ProgramBlocks blocks;
+    process::ForcesResult forces;
+    process::ProgramBlocks blocks;
   };
-  Judged judge(const DynamicsAt& dynamics) {
-    ForcesResult forces = *judged().forces;
-    ProgramBlocks blocks = judge_blocks(forces, dynamics, {.scan_points = 0});
+  Judged judge(const process::DynamicsAt& dynamics) {
+    process::ForcesResult forces = *judged().forces;
+    process::ProgramBlocks blocks = process::judge_blocks(forces, dynamics, {.scan_points = 0});
     return {.forces = std::move(forces), .blocks = std::move(blocks)};
   }
-  static DecideProblem problem(const Judged& judged, const DynamicsAt& dynamics) {
-    DecideProblem out = {.forces = judged.forces, .blocks = judged.blocks, .dynamics = dynamics};
+  static process::DecideProblem problem(const Judged& judged, const process::DynamicsAt& dynamics) {
+    process::DecideProblem out = {.forces = judged.forces, .blocks = judged.blocks, .dynamics = dynamics};
     out.blocks_options.scan_points = 0;
     out.machine.min_spindle_speed_rad_per_s = 6000.0 * units::rpm;
     out.machine.max_spindle_speed_rad_per_s = 18000.0 * units::rpm;

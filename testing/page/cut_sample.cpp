@@ -180,7 +180,7 @@ std::string sample_explanation() {
   at_rotation(1);
   at_rotation(3);
   at_chatter(0);
-  peaks.push_back(peak(612.6, "cannot be told", kind_alone("cut or chatter"), nullptr,
+  peaks.push_back(peak(612.6, "ambiguous", kind_alone("cut or chatter"), nullptr,
                        Json::array({cut_reading(612.6, 4), chatter_reading(612.6, 0)})));
   at_rotation(6);
   at_chatter(3);

@@ -84,7 +84,7 @@ export interface Reading {
 /** A peak; the reading of one that is not named is its kind alone. */
 export interface ExplainedPeak extends Partial<Omit<Reading, 'kind'>> {
   frequency_hz: number;
-  state: 'named' | 'cannot be told' | 'unexplained';
+  state: 'named' | 'ambiguous' | 'unexplained';
   kind: PeakKind;
   chatter_frequency_hz: Num;
   others: Reading[];
@@ -95,7 +95,7 @@ export interface ExplanationDocument {
   spindle_speed_rpm: number;
   speed_from_peaks: boolean;
   peaks: ExplainedPeak[];
-  state: 'named' | 'cannot be told' | 'no chatter';
+  state: 'named' | 'ambiguous' | 'no chatter';
   mode: Num;
   mode_of: Owner | null;
   chatter_frequency_hz: Num;

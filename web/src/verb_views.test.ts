@@ -26,7 +26,7 @@ describe('readings', () => {
   it('name multiples of the rotation, and what is not known', () => {
     expect(readingText({ ...chatter, kind: 'tooth passing', rotations: 6 })).toBe('6 × rotation');
     const alone = (kind: ExplainedPeak['kind']) => readingText({ kind, mode: null, mode_of: null });
-    expect([alone('chatter'), alone('cut or chatter'), alone('unexplained')]).toEqual(['chatter of a mode that cannot be told', 'the cut, or chatter', 'nothing known']);
+    expect([alone('chatter'), alone('cut or chatter'), alone('unexplained')]).toEqual(['chatter of an ambiguous mode', 'the cut, or chatter', 'nothing known']);
   });
   it('are drawn beyond the highest peak', () => {
     const peaks = [{ frequency_hz: 1000 }] as ExplainedPeak[];

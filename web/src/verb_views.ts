@@ -30,7 +30,7 @@ function turnsText(rotations: number): string {
 /** What a peak is read as: "12 × rotation", "mode 3 at 433.0 Hz + 2 × rotation"; its kind alone where nothing more is known. */
 export function readingText(reading: Pick<ExplainedPeak, 'kind'> & Partial<Reading>): string {
   const { kind, rotations, mode = null, mode_of = null, mode_frequency_hz: own = null, mirrored = false } = reading;
-  if (rotations === undefined) return kind === 'chatter' ? 'chatter of a mode that cannot be told' : kind === 'cut or chatter' ? 'the cut, or chatter' : 'nothing known';
+  if (rotations === undefined) return kind === 'chatter' ? 'chatter of an ambiguous mode' : kind === 'cut or chatter' ? 'the cut, or chatter' : 'nothing known';
   if (kind === 'rotation' || kind === 'tooth passing') return turnsText(rotations);
   if (kind !== 'chatter') return 'nothing known';
   const name = `${modeName({ mode, mode_of })}${own === null ? '' : ` at ${own.toFixed(2)} Hz`}`;

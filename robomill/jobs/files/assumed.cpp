@@ -61,33 +61,17 @@ std::vector<Assumption> assumed_of(const LobesFile& file, CutUse use) {
   return defaults.with(file.assumed);
 }
 
-std::vector<Assumption> assumed_of(const ForcesFile& file, bool with_cell) {
+std::vector<Assumption> assumed_of(const process::ForcesFile& file, bool with_cell) {
   Defaults defaults(file.document, file.path);
   defaults.add_without("tool.helix_deg", "Helix angle", "0°");
   defaults.add_without("tool.runout_um", "Runout", "0 µm");
   add_coefficients(defaults, true, true);
   if (!with_cell) defaults.add("Machine", "rigid, its deflection is left out", "robot.cell");
-  const bool posed = with_cell && !file.joints_rad.empty() && file.job == ForcesJob::revolution;
+  const bool posed = with_cell && !file.joints_rad.empty() && file.job == process::ForcesJob::revolution;
   if (posed) defaults.add_without("robot.feed_direction", "Feed direction", "along x of the work frame");
   if (!file.dynamics.modes.empty()) {
     defaults.add_without("cut.feed_direction_deg", "Feed direction in the axes of the structure", "0°, along x");
     defaults.add_without("workpiece_dynamics", "Workpiece and its fixture", "rigid");
-  }
-  return defaults.with(file.assumed);
-}
-
-std::vector<Assumption> assumed_along_program(const CellFile& file, bool gamma_chosen) {
-  Defaults defaults(file.document, file.path);
-  std::string open;
-  constexpr double without_limit = 1e299;
-  for (std::size_t i = 0; i < file.cell.arm.joints.size(); ++i) {
-    const robot::Joint& joint = file.cell.arm.joints[i];
-    if (joint.min_position > -without_limit && joint.max_position < without_limit) continue;
-    open += fmt::format("{}{}", open.empty() ? "" : ", ", i + 1);
-  }
-  if (!open.empty()) defaults.add("Limits of the positions of joints " + open, "none", "robot.joint_min_position_deg");
-  if (!file.hybrid && !file.gamma_given && !gamma_chosen) {
-    defaults.add("Turn of the flange about the tool's axis", "0°", "robot.gamma_deg");
   }
   return defaults.with(file.assumed);
 }

@@ -2,9 +2,8 @@
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/files/forces_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/process/files/forces_toml.hpp"
 
 /// What the files of a job leave to the usual case, with what else is assumed of them. Nothing of files that were built
 /// in memory.
@@ -18,10 +17,6 @@ enum class CutUse {
 [[nodiscard]] std::vector<Assumption> assumed_of(const LobesFile& file, CutUse use);
 
 /// @param with_cell  a cell is there, whoever names it
-[[nodiscard]] std::vector<Assumption> assumed_of(const ForcesFile& file, bool with_cell);
-
-/// Of a cell that a program is run in.
-/// @param gamma_chosen  how the flange turns about the tool is chosen where the cell does not say it
-[[nodiscard]] std::vector<Assumption> assumed_along_program(const CellFile& file, bool gamma_chosen);
+[[nodiscard]] std::vector<Assumption> assumed_of(const process::ForcesFile& file, bool with_cell);
 
 }  // namespace robomill::jobs

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/folder_change.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/init/example_hit.hpp"
 #include "robomill/jobs/init/hits_document.hpp"

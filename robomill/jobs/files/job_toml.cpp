@@ -14,8 +14,8 @@
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/files/cut_fields.hpp"
-#include "robomill/jobs/files/decide_toml.hpp"
+#include "robomill/process/files/cut_fields.hpp"
+#include "robomill/process/files/decide_toml.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -47,7 +47,7 @@ void read_sources(io::TomlFile& file, Job& job) {
     job.band_high_hz = band[1];
   }
   modal::ModalModel none;
-  job.directions = read_missing_directions(file, "job", none);
+  job.directions = process::read_missing_directions(file, "job", none);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1);
@@ -169,7 +169,7 @@ Job read_job(const io::TomlSource& source) {
   Job job{.file = source.path};
   read_sources(file, job);
   read_limits(file, job);
-  job.decide = read_decide(file, job.judges_blocks());
+  job.decide = process::read_decide(file, job.judges_blocks());
   read_cuts(file, job);
   std::filesystem::path more_cuts;
   if (file.path("job.cuts", more_cuts)) {

@@ -9,8 +9,8 @@
 #include "robomill/base/names.hpp"
 #include "robomill/decision/finish.hpp"
 #include "robomill/io/toml_source.hpp"
-#include "robomill/jobs/decide_options.hpp"
 #include "robomill/modal/directions.hpp"
+#include "robomill/process/decide_options.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
 
@@ -61,7 +61,7 @@ struct Job {
   int fit_modes = 0;                             ///< 0: chosen by the fit
   decision::RecommendOptions recommend = {};     ///< of the cutter, the spindle and safety; the cut has the rest
   decision::FinishLimits finish = {};
-  DecideOptions decide = {};  ///< of a job that judges blocks
+  process::DecideOptions decide = {};  ///< of a job that judges blocks
   std::vector<TestCut> cuts = {};
   std::vector<double> near_deg =
       {};  ///< joints to begin the program near, asked for beside the file; empty: the cell's

@@ -10,18 +10,18 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/process/files/cut_fields.hpp"
 
 namespace robomill::jobs {
 namespace {
 
 /// The modes of the cell's posture, with the uncertainty that they come with.
 void load_posture(LobesFile& file, Progress& progress) {
-  const auto posture = std::make_shared<ModesOfPosture>();
-  const auto find = [&] { *posture = posture_modes(file.cell, file.joints, file.posture_axes, progress); };
+  const auto posture = std::make_shared<cell::ModesOfPosture>();
+  const auto find = [&] { *posture = cell::posture_modes(file.cell, file.joints, file.posture_axes, progress); };
   if (file.document) {
     file.document->locate(find);
   } else {
@@ -29,14 +29,14 @@ void load_posture(LobesFile& file, Progress& progress) {
   }
   file.problem.dynamics = posture->prediction.modes;
   // An upright cut in the plane of base x and y asks for nothing of base z.
-  const bool along_z = file.problem.in_three_directions() || file.posture_axes != PostureAxes::base;
-  for (const std::string& text : posture_warnings(*posture, {true, true, along_z})) {
+  const bool along_z = file.problem.in_three_directions() || file.posture_axes != cell::PostureAxes::base;
+  for (const std::string& text : cell::posture_warnings(*posture, {true, true, along_z})) {
     file.notes.push_back(fmt::format("{}{}", io::warning_label, text));
   }
   file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
   add_assumed(file.assumed, posture->assumed);
   constexpr double noticed_rad = 5.0 * units::deg;
-  if (file.posture_axes == PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
+  if (file.posture_axes == cell::PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
     file.notes.push_back(
         fmt::format("The cut's z is the base's z, from which the tool's axis stands off by {:.3g} deg in this posture.",
                     posture->axis_off_z_rad / units::deg));
@@ -79,8 +79,8 @@ void load_dynamics(LobesFile& file, Progress& progress) {
                                 .file = file.path.filename().string()}});
   }
   if (file.drilling) return;
-  const auto assumed =
-      complete_directions(file.problem.dynamics, file.problem.measured, file.directions, file.path, "dynamics");
+  const auto assumed = process::complete_directions(file.problem.dynamics, file.problem.measured, file.directions,
+                                                    file.path, "dynamics");
   if (assumed) add_assumed(file.assumed, {*assumed});
 }
 

@@ -19,7 +19,7 @@
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
-#include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/process/files/cut_fields.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -87,14 +87,15 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
   file.number("cut.lead_deg", "lead_rad", units::deg, milling.cut.lead_rad);
   file.number("cut.tilt_deg", "tilt_rad", units::deg, milling.cut.tilt_rad);
-  if (!read_direction(file, milling.cut.direction)) file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
+  if (!process::read_direction(file, milling.cut.direction))
+    file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
   const bool slot = milling.cut.direction == cutting::MillingDirection::slot;
   if (slot && out.sweep == stability::SweptParameter::radial_depth) {
     throw file.reject("lobes.sweep", "must not be the step-over of a slot, which has no neighbour");
   }
-  const bool radial = read_radial_depth(file, milling.cut.radial_depth_m);
+  const bool radial = process::read_radial_depth(file, milling.cut.radial_depth_m);
   if (!radial && !slot) file.require("cut.radial_depth_mm");
-  require_full_width(file, milling.cut.direction, milling.cut.radial_depth_m, cutter.mill, cutter.kind);
+  process::require_full_width(file, milling.cut.direction, milling.cut.radial_depth_m, cutter.mill, cutter.kind);
   const bool depth = file.number("cut.axial_depth_mm", "cut.axial_depth_m", units::mm, milling.cut.axial_depth_m);
   if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
     file.require("cut.axial_depth_mm", "The chart varies something else");
@@ -153,11 +154,11 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   }
   file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  const bool radial = read_radial_depth(file, out.radial_depth_m);
+  const bool radial = process::read_radial_depth(file, out.radial_depth_m);
   const bool entry = file.number("cut.entry_deg", "entry_rad", units::deg, milling.immersion.entry_rad);
   const bool exit = file.number("cut.exit_deg", "exit_rad", units::deg, milling.immersion.exit_rad);
   cutting::MillingDirection direction = cutting::MillingDirection::up;
-  const bool named = read_direction(file, direction);
+  const bool named = process::read_direction(file, direction);
   if (milling.feed_per_tooth_m < 0.0) throw file.reject("cut.feed_per_tooth_mm", "must be >= 0");
   if (named && (entry || exit)) throw file.reject("cut.direction", "must not stand beside entry_deg and exit_deg");
   if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
@@ -181,7 +182,7 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   } else if (!radial) {
     file.require("cut.radial_depth_mm");
   }
-  require_full_width(file, direction, out.radial_depth_m, milling.tool);
+  process::require_full_width(file, direction, out.radial_depth_m, milling.tool);
   file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
 }
 
@@ -316,7 +317,7 @@ void take_material(const io::TomlFile& file, const cutting::CoefficientTable& ta
   cut.diameter_m = 2.0 * radius_m;
   std::ranges::move(table.outside(cut), std::back_inserter(out.notes));
   if (!out.drilling) std::ranges::move(table.unlike_recommended(cut), std::back_inserter(out.notes));
-  add_unusual(cut, out.notes);
+  process::add_unusual(cut, out.notes);
   if (table.std_ratio == 0.0) return;
   for (const char* key : {"tangential_std_n_per_mm2", "radial_std_n_per_mm2", "coefficient_std_ratio"}) {
     if (file.has(std::string("uncertainty.") + key)) return;
@@ -335,7 +336,7 @@ void read_posture(io::TomlFile& file, LobesFile& out) {
   if (cell && !joints) file.require("dynamics.joints_deg", "The posture: one value a joint");
   if (joints && !cell) file.require("dynamics.cell", "Whose joints?");
   if (!cell) return;
-  file.choice("dynamics.axes", posture_axes_names, out.posture_axes);
+  file.choice("dynamics.axes", cell::posture_axes_names, out.posture_axes);
   if (!out.modes.empty() || !out.frf.empty() || !out.problem.dynamics.modes.empty()) {
     throw file.reject("dynamics.cell", "must not stand beside modes, frf, x, y or z");
   }
@@ -345,7 +346,7 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
   cutting::Cutter cutter;
-  read_cutter(file, cutter);
+  process::read_cutter(file, cutter);
   out.problem.milling.tool = cutter.mill;
   file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
   file.choice("lobes.sweep", stability::swept_names, out.sweep);
@@ -358,11 +359,12 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
     read_forces(file, out, table);
   }
   if (out.drilling) out.problem.drilling = drill_of(file, out);
-  read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
+  process::read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
   read_posture(file, out);
-  if (!out.drilling) out.directions = read_missing_directions(file, "dynamics", out.problem.dynamics);
+  if (!out.drilling) out.directions = process::read_missing_directions(file, "dynamics", out.problem.dynamics);
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
-  read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
+  process::read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf,
+                          out.problem.workpiece_dynamics);
   read_chart(file, out);
   if (spatial) {
     const bool part = !out.workpiece_modes.empty() || !out.problem.workpiece_dynamics.modes.empty();

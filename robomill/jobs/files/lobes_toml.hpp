@@ -8,8 +8,8 @@
 
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/io/toml_source.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/sweep.hpp"
@@ -27,17 +27,17 @@ namespace robomill::jobs {
 /// a cell and one posture of it.
 struct LobesFile {
   std::filesystem::path path;
-  stability::LobesProblem problem;                          ///< dynamics is empty unless modes stand in the file itself
-  stability::LobesOptions options;                          ///< without points
-  std::filesystem::path modes = {};                         ///< dynamics.modes, resolved; empty where absent
-  std::filesystem::path frf = {};                           ///< dynamics.frf, resolved; empty where absent
-  modal::MissingDirections directions = {};                 ///< of the tool's structure
-  std::filesystem::path cell = {};                          ///< dynamics.cell, resolved; empty where absent
-  std::vector<double> joints = {};                          ///< dynamics.joints_deg, the posture [rad or m]
-  PostureAxes posture_axes = PostureAxes::base;             ///< dynamics.axes beside a cell: those of the cut
-  std::shared_ptr<const ModesOfPosture> posture = {};       ///< what load_dynamics() found there
-  std::filesystem::path workpiece_modes = {};               ///< workpiece_dynamics.modes, the same
-  std::filesystem::path workpiece_frf = {};                 ///< workpiece_dynamics.frf, the same
+  stability::LobesProblem problem;           ///< dynamics is empty unless modes stand in the file itself
+  stability::LobesOptions options;           ///< without points
+  std::filesystem::path modes = {};          ///< dynamics.modes, resolved; empty where absent
+  std::filesystem::path frf = {};            ///< dynamics.frf, resolved; empty where absent
+  modal::MissingDirections directions = {};  ///< of the tool's structure
+  std::filesystem::path cell = {};           ///< dynamics.cell, resolved; empty where absent
+  std::vector<double> joints = {};           ///< dynamics.joints_deg, the posture [rad or m]
+  cell::PostureAxes posture_axes = cell::PostureAxes::base;  ///< dynamics.axes beside a cell: those of the cut
+  std::shared_ptr<const cell::ModesOfPosture> posture = {};  ///< what load_dynamics() found there
+  std::filesystem::path workpiece_modes = {};                ///< workpiece_dynamics.modes, the same
+  std::filesystem::path workpiece_frf = {};                  ///< workpiece_dynamics.frf, the same
   std::array<int, 2> surface_grid = {0, 0};                 ///< speeds and depths of the map of surface errors; 0: none
   stability::Uncertainty uncertainty = {};                  ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                              ///< b [m]; from the angles where they are given

@@ -7,24 +7,24 @@
 #include <string_view>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/check.hpp"
+#include "robomill/cell/dynamics.hpp"
+#include "robomill/cell/files/check_json.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/cutting/files/slots_csv.hpp"
-#include "robomill/jobs/cell_check.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
-#include "robomill/jobs/files/cell_check_json.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/modes.hpp"
-#include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/process/forces.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/simulation/files/simulation_files.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
@@ -88,8 +88,8 @@ std::string document(const FrfJobResult& result, Format) {
 std::string document(const ModesResult& result, Format format) {
   return format == Format::csv ? modal::modes_csv(result.fit.model) : modal::modes_json(result.fit);
 }
-std::string document(const ModesOfPosture& result, Format format) {
-  return format == Format::csv ? modal::modes_csv(result.prediction.modes) : posture_modes_json(result);
+std::string document(const cell::ModesOfPosture& result, Format format) {
+  return format == Format::csv ? modal::modes_csv(result.prediction.modes) : cell::posture_modes_json(result);
 }
 std::string document(const TipPrediction& result, Format) {
   return tip_json(result);
@@ -111,8 +111,8 @@ std::string document(const SimulateResult& result, Format) {
   return simulation::simulation_json(result.simulation, result.point.spindle_speed_rad_per_s,
                                      result.point.axial_depth_m);
 }
-std::string document(const ForcesResult& result, Format format) {
-  return format == Format::csv ? forces_csv(result) : forces_json(result);
+std::string document(const process::ForcesResult& result, Format format) {
+  return format == Format::csv ? process::forces_csv(result) : process::forces_json(result);
 }
 std::string document(const CoefficientsResult& result, Format format) {
   if (format == Format::csv) return cutting::slot_fit_csv(result.fit);
@@ -125,8 +125,8 @@ std::string document(const StiffnessResult& result, Format format) {
   if (format == Format::toml) return robot::stiffness_toml(result.found, arm);
   return robot::stiffness_json(result.found, arm, result.loads);
 }
-std::string document(const CellCheck& result, Format) {
-  return cell_check_json(result);
+std::string document(const cell::CellCheck& result, Format) {
+  return cell::cell_check_json(result);
 }
 
 void write_document(const std::filesystem::path& path, const FrfJobResult& result,
@@ -136,7 +136,7 @@ void write_document(const std::filesystem::path& path, const FrfJobResult& resul
 void write_document(const std::filesystem::path& path, const ModesResult& result) {
   write_text(path, result);
 }
-void write_document(const std::filesystem::path& path, const ModesOfPosture& result) {
+void write_document(const std::filesystem::path& path, const cell::ModesOfPosture& result) {
   write_text(path, result);
 }
 void write_document(const std::filesystem::path& path, const TipPrediction& result) {
@@ -159,7 +159,7 @@ void write_document(const std::filesystem::path& path, const SimulateResult& res
   if (io::format_of(path) == Format::json) return write_text(path, result);
   simulation::write_simulation(path, result.simulation);
 }
-void write_document(const std::filesystem::path& path, const ForcesResult& result) {
+void write_document(const std::filesystem::path& path, const process::ForcesResult& result) {
   write_text(path, result);
 }
 void write_document(const std::filesystem::path& path, const CoefficientsResult& result) {
@@ -169,7 +169,7 @@ void write_document(const std::filesystem::path& path, const StiffnessResult& re
   // A line for cell.toml says nothing of its convergence.
   if (result.converged() || io::format_of(path) != Format::toml) write_text(path, result);
 }
-void write_document(const std::filesystem::path& path, const CellCheck& result) {
+void write_document(const std::filesystem::path& path, const cell::CellCheck& result) {
   write_text(path, result);
 }
 

@@ -23,7 +23,7 @@ class PlanFolder {
     change_.write(name, content);
   }
   /// Of a trajectory, or of that of an earlier run.
-  void place(const SmoothResult& path) {
+  void place(const process::SmoothResult& path) {
     const std::string name = path.output.filename().string();
     names_.push_back(name);
     if (path.trajectory) {
@@ -101,9 +101,9 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   if (result.frfs) files.write("tip.uff", modal::frf_uff(*result.frfs));
   if (!report.modes.empty()) files.write("modes.json", report.modes);
   if (result.has_lobes()) files.write("lobes.json", report.lobes);
-  if (result.forces) files.write("forces.csv", forces_csv(*result.forces));
+  if (result.forces) files.write("forces.csv", process::forces_csv(*result.forces));
   if (result.blocks) {
-    files.write("blocks.csv", blocks_csv(*result.forces, *result.blocks));
+    files.write("blocks.csv", process::blocks_csv(*result.forces, *result.blocks));
     files.write("blocks.json", report.blocks);
   }
   if (result.program_out) files.write(result.program_name, result.program_out->text);

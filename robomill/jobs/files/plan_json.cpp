@@ -14,6 +14,9 @@
 #include "robomill/modal/files/mode_json.hpp"
 #include "robomill/page/thin.hpp"
 #include "robomill/path/files/smooth_object.hpp"
+#include "robomill/process/files/blocks_json.hpp"
+#include "robomill/process/files/decision_json.hpp"
+#include "robomill/process/files/forces_json.hpp"
 #include "robomill/stability/files/lobes_object.hpp"
 
 namespace robomill::jobs {
@@ -154,7 +157,11 @@ Json decision_json(const PlanResult& result) {
     json["feed_directions"] = feed_directions_json(*result.feed_directions);
   }
   if (result.hits) json["hit_directions"] = result.hit_directions;
-  if (result.decision) json["decision"] = program_decision_json(result);
+  if (result.decision) {
+    process::DecisionOutput output{.collisions_checked = collisions_checked(result)};
+    if (result.program_out) output.changed_lines = result.program_out->changed_lines;
+    json["decision"] = process::decision_object(*result.decision, *result.forces, result.job.decide, output);
+  }
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   return json;
@@ -197,8 +204,8 @@ Json plan_object(const PlanResult& result) {
   if (result.job.has_structure())
     json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
   if (result.has_lobes()) json["lobes"] = stability::lobes_object(result.lobes, result.uncertain);
-  if (result.forces) json["forces"] = forces_object(*result.forces);
-  if (result.blocks) json["blocks"] = blocks_summary(*result.forces, *result.blocks);
+  if (result.forces) json["forces"] = process::forces_object(*result.forces);
+  if (result.blocks) json["blocks"] = process::blocks_summary(*result.forces, *result.blocks);
   if (result.path) json["path"] = path::smooth_object(result.path->smoothed);
   return json;
 }

@@ -12,14 +12,7 @@ namespace robomill::jobs {
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
 /// Spectra of the recorded test cuts.
 [[nodiscard]] io::Json recordings_json(const PlanResult& result);
-/// forces.json, and the member `assembly`.
-[[nodiscard]] io::Json forces_object(const ForcesResult& result);
-/// Of blocks.json how many blocks there are, how many chatter, and the worst.
-[[nodiscard]] io::Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks);
-/// blocks.json.
-[[nodiscard]] io::Json blocks_object(const ForcesResult& forces, const ProgramBlocks& blocks);
-/// The decision of plan.json.
-[[nodiscard]] io::Json program_decision_json(const PlanResult& plan);
+/// The member `assembly`.
 [[nodiscard]] io::Json prediction_object(const TipPrediction& prediction);
 
 /// plan.json: the decision, and each stage's document as a member.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/files/tools_csv.hpp"
@@ -24,8 +25,6 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_lines.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/files/forces_toml.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/modal/files/fit_toml.hpp"
@@ -34,6 +33,7 @@
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
+#include "robomill/process/files/forces_toml.hpp"
 #include "robomill/robot/files/loads_csv.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
@@ -83,11 +83,11 @@ std::vector<Kind> kinds() {
       {.name = "forces.toml",
        .example = "examples/force-along-program/forces.toml",
        .least_keys = 3,
-       .read = [](const io::TomlSource& s) { return read_forces(s, ForcesJob::program).notes; }},
+       .read = [](const io::TomlSource& s) { return process::read_forces(s, process::ForcesJob::program).notes; }},
       {.name = "cell.toml",
        .example = "data/cells/kuka-kr210-r2700.toml",
        .least_keys = 3,
-       .read = [](const io::TomlSource& s) { return read_cell(s, Robots::any).notes; }},
+       .read = [](const io::TomlSource& s) { return cell::read_cell(s, cell::Robots::any).notes; }},
       {.name = "assembly.toml",
        .example = "examples/joint-bar/rigid.toml",
        .least_keys = 4,
@@ -235,7 +235,7 @@ TEST(UnusualDocuments, AreWarnedOfInTables) {
                                          notes));
   EXPECT_NE(joined(notes).find("tools.csv:3: length_mm = 60000 mm; is unusual"), std::string::npos) << joined(notes);
 
-  const robot::Arm arm = read_cell(source / "data/cells/kuka-kr210-r2700.toml", Robots::any).cell.arm;
+  const robot::Arm arm = cell::read_cell(source / "data/cells/kuka-kr210-r2700.toml", cell::Robots::any).cell.arm;
   const std::string head = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n";
   const robot::LoadsFile loads =
       robot::read_loads(folder.file("loads.csv", head + "0.312,-0.871,1.934,0.208,0.777,0.05,300,0,0,150,0,0\n"), arm);

@@ -12,10 +12,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/init/template_lines.hpp"
 
@@ -264,10 +264,10 @@ std::string job_document(const MeasuredAxes& measured, bool example) {
 std::string cell_document(const std::string& robot, bool example) {
   std::string text(raw_template(Template::cell));
   if (robot.empty()) return rendered(text, example);
-  const std::string_view cell = known_arm_cell(robot);
+  const std::string_view cell = cell::known_arm_cell(robot);
   if (cell.empty()) {
     std::string names;
-    for (const KnownArm& arm : known_arms()) names += (names.empty() ? "" : ", ") + arm.name;
+    for (const cell::KnownArm& arm : cell::known_arms()) names += (names.empty() ? "" : ", ") + arm.name;
     throw InvalidInput(fmt::format("\"{}\"", robot), "is no robot that is known here", "There are " + names);
   }
   text = with_remark(text, "robot.model", io::toml_quoted(robot),
@@ -278,7 +278,7 @@ std::string cell_document(const std::string& robot, bool example) {
   };
   for (const char* key : {"workpiece.origin_mm", "tool.length_mm"}) take(key);
   // What the arm has anyway stands there to be changed.
-  const robot::Arm arm = read_cell(io::TomlSource(robot + ".toml", std::string(cell))).cell.arm;
+  const robot::Arm arm = cell::read_cell(io::TomlSource(robot + ".toml", std::string(cell))).cell.arm;
   for (const ShownList& list : shown_lists) {
     text = io::with_setting(text, {.key = list.key, .value = values_of(arm, list)});
     text = commented_out(std::move(text), list.key);

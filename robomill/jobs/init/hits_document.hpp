@@ -45,8 +45,8 @@ struct MeasuredAxes {
 /// job.toml, which asks what a direction is taken for that was not measured.
 [[nodiscard]] std::string job_document(const MeasuredAxes& measured, bool example);
 
-/// cell.toml with an arm of known_arms(); of workpiece and tool what data/cells has stands where the template shows its
-/// own. Empty: the template's arm.
+/// cell.toml with an arm of cell::known_arms(); of workpiece and tool what data/cells has stands where the template
+/// shows its own. Empty: the template's arm.
 /// @throws InvalidInput naming those that are known
 [[nodiscard]] std::string cell_document(const std::string& robot, bool example);
 

@@ -12,11 +12,11 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/known_arms.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
-#include "robomill/jobs/files/known_arms.hpp"
 #include "robomill/jobs/init/hits_document.hpp"
 #include "robomill/jobs/init/questions.hpp"
 #include "robomill/jobs/init/template_lines.hpp"
@@ -79,7 +79,7 @@ std::vector<std::string> usable_materials() {
 
 std::vector<std::string> arm_names() {
   std::vector<std::string> names;
-  for (const KnownArm& arm : known_arms()) names.push_back(arm.name);
+  for (const cell::KnownArm& arm : cell::known_arms()) names.push_back(arm.name);
   return names;
 }
 

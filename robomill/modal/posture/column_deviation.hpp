@@ -26,7 +26,7 @@ struct DirectError {
 
 /// How far a direct receptance is missed where no force along its axis was measured.
 struct HeldOut {
-  double error = 0.0;      ///< Σ |ΔH_aa| / Σ |H_aa| over all postures, NaN where it cannot be told
+  double error = 0.0;      ///< Σ |ΔH_aa| / Σ |H_aa| over all postures, NaN where it is not known
   double predicted = 0.0;  ///< what the parameters' covariance makes of it
 };
 /// Calibrates without the forces along one measured axis and compares what follows with what was measured of it.

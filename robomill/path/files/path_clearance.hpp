@@ -5,7 +5,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/collision.hpp"
 
-// Method: robomill/jobs/README.md, "Collisions along a trajectory (`path_clearance.hpp`)"
+// Method: robomill/cell/README.md, "Collisions along a trajectory (`clearance.hpp`)"
 
 namespace robomill::path {
 

@@ -6,6 +6,8 @@
 #include "robomill/path/options.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "Files"
+
 namespace robomill::io {
 class TomlFile;
 }

@@ -165,20 +165,12 @@ void ProgramFile::rewind() {
   state_->walk.rewind();
 }
 
-const std::vector<Skipped>& ProgramFile::skipped() const {
-  return state_->walk.remarks().skipped();
-}
-
-std::size_t ProgramFile::skipped_count() const {
-  return state_->walk.remarks().skipped_count();
-}
-
-std::vector<std::string> ProgramFile::notes() const {
-  return state_->walk.remarks().notes();
-}
-
-std::vector<Assumption> ProgramFile::assumed() const {
-  return state_->walk.remarks().assumed();
+Remarks ProgramFile::remarks() const {
+  ProgramRemarks& remarks = state_->walk.remarks();
+  return {.skipped = remarks.skipped(),
+          .skipped_count = remarks.skipped_count(),
+          .notes = remarks.notes(),
+          .assumed = remarks.assumed()};
 }
 
 std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, const ProgramReading& reading) {

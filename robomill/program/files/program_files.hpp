@@ -81,14 +81,8 @@ class ROBOMILL_API ProgramFile final : public Source {
   /// @throws InvalidInput if the file is a pipe
   void rewind() override;
 
-  /// What was left out up to the last block read, in whichever pass came farthest: the first 500.
-  [[nodiscard]] const std::vector<Skipped>& skipped() const;
-  /// … and how many they are.
-  [[nodiscard]] std::size_t skipped_count() const;
-  /// What was corrected so far, in sentences.
-  [[nodiscard]] std::vector<std::string> notes() const;
-  /// What was taken for granted so far.
-  [[nodiscard]] std::vector<Assumption> assumed() const;
+  /// Of what was left out the first 500 are kept.
+  [[nodiscard]] Remarks remarks() const override;
 
  private:
   struct State;

@@ -66,21 +66,22 @@ TEST(ProgramFiles, StreamedAndWholeAreTheSameAndAgainAfterRewinding) {
     }
     file->rewind();
   }
-  EXPECT_EQ(file->skipped_count(), whole.skipped.size()) << "reported once, however often it is read";
-  ASSERT_EQ(file->skipped().size(), 500U);
-  for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(file->skipped()[i].line, whole.skipped[i].line);
+  EXPECT_EQ(file->remarks().skipped_count, whole.skipped.size()) << "reported once, however often it is read";
+  const std::vector<Skipped> skipped = file->remarks().skipped;
+  ASSERT_EQ(skipped.size(), 500U);
+  for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(skipped[i].line, whole.skipped[i].line);
 }
 
 TEST(ProgramFiles, NotesAreReportedOnceToo) {
   const test::Folder folder;
   const auto file = open_program(folder.file("part.apt", "FEDRAT/9\nGOTO/0,0,0,0,0,.9995\nGOTO/1,0,0,0,0,.9998\n"));
-  ASSERT_EQ(file->notes().size(), 1U) << "of the start";
+  ASSERT_EQ(file->remarks().notes.size(), 1U) << "of the start";
   Block block;
   for (int pass = 0; pass < 3; ++pass) {
     while (file->next(block)) {
     }
     file->rewind();
-    EXPECT_EQ(file->notes().at(0), "2 axes made a unit vector, off by up to 0.0005, the first in line 2.");
+    EXPECT_EQ(file->remarks().notes.at(0), "2 axes made a unit vector, off by up to 0.0005, the first in line 2.");
   }
 }
 

@@ -22,7 +22,7 @@
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/files/urdf.hpp"
 #include "robomill/serve/files/inspect.hpp"
-#include "robomill/serve/job_verbs.hpp"
+#include "robomill/serve/jobs/verbs.hpp"
 #include "robomill/serve/process/work.hpp"
 #include "testing/serve/slot.hpp"
 #include "testing/support.hpp"

@@ -10,7 +10,7 @@
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
-#include "robomill/serve/tap_settings.hpp"
+#include "robomill/serve/tap/settings.hpp"
 
 namespace robomill::serve {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "robomill/modal/hits.hpp"
-#include "robomill/serve/tap_hits.hpp"
+#include "robomill/serve/tap/hits.hpp"
 
 // Method: robomill/serve/README.md, "Tap test"
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "robomill/base/progress.hpp"
-#include "robomill/serve/job_runner.hpp"
-#include "robomill/serve/job_verbs.hpp"
+#include "robomill/serve/jobs/runner.hpp"
+#include "robomill/serve/jobs/verbs.hpp"
 #include "robomill/serve/process/worker_process.hpp"
 
 // Method: robomill/serve/README.md, "Processes"

@@ -7,7 +7,7 @@
 
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/http/target.hpp"
-#include "robomill/serve/monitor_sessions.hpp"
+#include "robomill/serve/monitor/sessions.hpp"
 
 namespace robomill::serve {
 namespace {

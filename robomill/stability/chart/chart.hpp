@@ -25,7 +25,7 @@ struct Count {
 /// Where a chart is looked at.
 struct Axes {
   std::vector<double> spindle_speed_rad_per_s, axial_depth_m;
-  std::size_t fine = 1;  ///< columns: every so manieth depth is looked at, the others show where a limit lies between
+  std::size_t fine = 1;  ///< columns: every n-th depth is evaluated, the others show where a limit lies between
   [[nodiscard]] OperatingPoint at(std::size_t speed, std::size_t depth) const {
     return {spindle_speed_rad_per_s[speed], axial_depth_m[depth]};
   }

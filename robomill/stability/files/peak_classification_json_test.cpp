@@ -40,11 +40,11 @@ TEST(PeakClassificationJson, HoldsEveryPeakInShopUnits) {
 TEST(PeakClassificationJson, NamesNothingThatCannotBeDetermined) {
   const auto json = nlohmann::json::parse(
       peak_classification_json(explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
-  EXPECT_EQ(json["state"], "cannot be told");
+  EXPECT_EQ(json["state"], "ambiguous");
   EXPECT_TRUE(json["mode"].is_null());
   EXPECT_TRUE(json["mode_of"].is_null());
   const auto& peak = json["peaks"][0];
-  EXPECT_EQ(peak["state"], "cannot be told");
+  EXPECT_EQ(peak["state"], "ambiguous");
   EXPECT_EQ(peak["kind"], "chatter");
   EXPECT_TRUE(peak["mode"].is_null());
   EXPECT_EQ(peak["others"][0]["mode"], 7);
@@ -58,7 +58,7 @@ TEST(PeaksCsv, HasARowAPeak) {
   const auto starts = [&](const char* row) { return table.find(std::string("\n") + row) != std::string::npos; };
   EXPECT_TRUE(starts("324.99,named,tooth passing,3,false,true,,,,")) << table;
   EXPECT_TRUE(starts("666.98,named,chatter,6,false,true,1,tool,17.4,")) << table;
-  EXPECT_TRUE(starts("539.5,cannot be told,chatter,,,,,,,,,,")) << table;
+  EXPECT_TRUE(starts("539.5,ambiguous,chatter,,,,,,,,,,")) << table;
 }
 
 }  // namespace peak_classification_json_test

@@ -62,9 +62,9 @@ describe('peaks', () => {
     speed_from_peaks: true,
     peaks: [
       { frequency_hz: 300, state: 'named', chatter_frequency_hz: null, others: [], ...reading, rotations: 3 },
-      { frequency_hz: 400.2, state: 'cannot be told', kind: 'cut or chatter', mode: null, mode_of: null, chatter_frequency_hz: null, others: [reading] },
+      { frequency_hz: 400.2, state: 'ambiguous', kind: 'cut or chatter', mode: null, mode_of: null, chatter_frequency_hz: null, others: [reading] },
     ],
-    state: 'cannot be told',
+    state: 'ambiguous',
     mode: null,
     mode_of: null,
     chatter_frequency_hz: null,

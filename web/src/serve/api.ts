@@ -1,9 +1,9 @@
 // The server's answers, one function a path.
 import type { CheckAnswer, Fault, FolderState, Inspection, Job, JobRequest, LobesAnswer, LobesRequest, ServeConfig, Tap, TapHitCurves, TapRequest, Value, Verb } from './documents';
 import type { Report } from '../documents';
-import type { MonitorSession, MonitorSummary } from './monitor_documents';
+import type { MonitorSession, MonitorSummary } from './monitor/documents';
 import { sayOutdated } from './outdated';
-import type { ProgramAnswer, ProgramRequest } from './program_documents';
+import type { ProgramAnswer, ProgramRequest } from './program/documents';
 
 /** The server's no: its status, and what was wrong. Status 0: no answer at all. */
 export class ApiError extends Error {

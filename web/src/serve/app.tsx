@@ -2,19 +2,19 @@
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { Contained } from '../page';
 import { openApi, type ApiError } from './api';
-import { ArrivalsContext, useArrivals } from './arrivals';
+import { ArrivalsContext, useArrivals } from './files/arrivals';
 import { ServeContext } from './context';
 import type { ServeConfig } from './documents';
-import { FilesView } from './files';
-import { JobView } from './job';
-import { JobsView } from './jobs';
-import { LobesView } from './lobes';
-import { MonitorView } from './monitor';
+import { FilesView } from './files/files';
+import { JobView } from './files/job';
+import { JobsView } from './jobs/jobs';
+import { LobesView } from './lobes/lobes';
+import { MonitorView } from './monitor/monitor';
 import { FaultText } from './pieces';
-import { ProgramView } from './program';
+import { ProgramView } from './program/program';
 import { goTo, href, useRoute, type Route, type View } from './route';
 import { useServer } from './server';
-import { TapView } from './tap';
+import { TapView } from './tap/tap';
 
 const links: { view: View; name: string }[] = [
   { view: 'files', name: 'Files' },

@@ -1,7 +1,7 @@
 // What the server says of its own accord.
 import { wholeFault, wholeTap } from './api';
 import type { Job, Tap, TapStreamMessage } from './documents';
-import type { MonitorMessage } from './monitor_documents';
+import type { MonitorMessage } from './monitor/documents';
 
 export interface Listener {
   files: () => void; // the folder changed

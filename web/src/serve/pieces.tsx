@@ -1,7 +1,7 @@
 // What the views are made of.
 import type { ComponentChildren } from 'preact';
 import type { ApiError } from './api';
-import { reloadPage } from './drafts';
+import { reloadPage } from './files/drafts';
 import type { Fault } from './documents';
 import { useOutdated } from './outdated';
 import { isEditable } from './verbs';

@@ -4,7 +4,7 @@ import { asApiError, faultOf, ApiError, type Api } from './api';
 import type { FolderState, Tap, Verb } from './documents';
 import { listen } from './events';
 import { laterTap, newest, withFolder, withJob, withStream } from './later';
-import { monitorFeed } from './monitor_feed';
+import { monitorFeed } from './monitor/feed';
 
 /** What is wrong, by what was asked; null: nothing any longer. */
 export type Faults = Partial<Record<'state' | 'tap' | 'verbs' | 'events', ApiError | null>>;

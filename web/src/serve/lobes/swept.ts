@@ -1,0 +1,60 @@
+// A sweep that follows the sliders: its ranges, and what is known of the operating point in it.
+import type { Num } from '../../documents';
+import { intervalsText, sweptOf } from '../../verb_views';
+import type { EvaluatedPoint, LiveSweep } from '../documents';
+import { isHere, modeText, placed, type Point, type Ranges } from './settings';
+
+/** Name, unit and values of what is swept. */
+export function parameterOf(sweep: LiveSweep) {
+  return sweptOf({ ...sweep, points: [] });
+}
+
+/** The key of its slider, as others are named. */
+export function sweptKey({ sweep }: LiveSweep): string {
+  return `operating_point.${sweep === 'radial_depth' ? 'radial_depth_mm' : `${sweep}_deg`}`;
+}
+
+export function sweptRanges(sweep: LiveSweep): Ranges {
+  const ends = (list: number[]): [number, number] => [list[0] ?? 0, list[list.length - 1] ?? 1];
+  return { speed: ends(sweep.spindle_speed_rpm), depth: ends(parameterOf(sweep).values) };
+}
+
+/** In the middle of both. */
+export function firstSweptPoint(sweep: LiveSweep): Point {
+  const ranges = sweptRanges(sweep);
+  const middle = ([low, high]: [number, number]) => (low + high) / 2;
+  return placed([middle(ranges.speed), middle(ranges.depth)], ranges);
+}
+
+export interface SweptFacts {
+  stable: boolean;
+  evaluated: boolean; // this very point; else the nearest of the map
+  spectral_radius: Num;
+  intervals: string; // where the nearest speed is stable; empty: nowhere
+  frequency_hz: Num; // at which it chatters
+  mode: string;
+}
+
+function nearestIn(list: number[], value: number): number {
+  return list.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(list[best]! - value) ? i : best), 0);
+}
+
+function valueIn({ sweep }: LiveSweep, point: EvaluatedPoint): number | undefined {
+  return sweep === 'radial_depth' ? point.radial_depth_mm : sweep === 'lead' ? point.lead_deg : point.tilt_deg;
+}
+
+export function sweptFacts([speed, value]: Point, sweep: LiveSweep, points: EvaluatedPoint[]): SweptFacts {
+  const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(valueIn(sweep, point), value));
+  const column = nearestIn(sweep.spindle_speed_rpm, speed);
+  const row = nearestIn(parameterOf(sweep).values, value);
+  const radius = here ? here.spectral_radius : (sweep.spectral_radius[row]?.[column] ?? null);
+  const stable = here?.stable ?? (radius !== null && radius < 1);
+  return {
+    stable,
+    evaluated: here !== undefined,
+    spectral_radius: radius,
+    intervals: intervalsText(sweep.stable[column]?.intervals ?? []),
+    frequency_hz: stable ? null : (here?.dominant_frequency_hz ?? null),
+    mode: stable ? '' : modeText(here),
+  };
+}

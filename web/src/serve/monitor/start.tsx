@@ -1,0 +1,68 @@
+// Which recording or stream is to be monitored, and how.
+import { useState } from 'preact/hooks';
+import { useAction, useServe } from '../context';
+import type { FileEntry } from '../documents';
+import { ErrorBox, Labelled, Panel, Select } from '../pieces';
+import { goTo, href } from '../route';
+import { isRecording } from '../verbs';
+
+const stream = 'a stream';
+const fastest = 50;
+
+/** Recordings that can be played, of a folder's files. */
+export function playable(files: FileEntry[]): FileEntry[] {
+  return files.filter((file) => isRecording(file) && !file.path.endsWith('.jsonl'));
+}
+
+export function StartMonitor({ path }: { path: string }) {
+  const { api, folder, announce } = useServe();
+  const { busy, error, act } = useAction();
+  const files = folder?.files ?? [];
+  const configs = files.filter(({ kind }) => kind === 'monitor');
+  const recordings = playable(files);
+  const [chosenConfig, chooseConfig] = useState(path);
+  const [chosenInput, chooseInput] = useState('');
+  const [address, setAddress] = useState('');
+  const [speed, setSpeed] = useState('1');
+  const config = chosenConfig || configs[0]?.path || '';
+  const input = chosenInput || recordings[0]?.path || stream;
+  const start = async () => {
+    const { id } = await api.startMonitor(config, input === stream ? address.trim() : input, input === stream ? 1 : Number(speed));
+    announce('The spindle is monitored');
+    goTo('monitor', String(id));
+  };
+  if (folder !== null && configs.length === 0) {
+    return (
+      <p class="notice">
+        The monitor needs a monitor.toml that says how the samples are read. <code>robomill init monitor</code> writes one; then it stands among the <a href={href('files')}>files</a>.
+      </p>
+    );
+  }
+  return (
+    <Panel heading="Monitor a spindle" name="monitor-start">
+      <form
+        class="buttons"
+        onSubmit={(event) => {
+          event.preventDefault();
+          void act(start);
+        }}
+      >
+        <Select label="Settings" value={config} options={configs.map((file) => ({ value: file.path, name: file.path }))} choose={chooseConfig} />
+        <Select label="Samples from" value={input} options={[...recordings.map((file) => ({ value: file.path, name: file.path })), { value: stream, name: 'a stream of a broker (MQTT)' }]} choose={chooseInput} />
+        {input === stream ? (
+          <Labelled label="Address (empty: mqtt.topic of the settings)">
+            <input type="text" value={address} placeholder="mqtt://HOST/TOPIC" spellcheck={false} autocomplete="off" onInput={({ currentTarget }) => setAddress(currentTarget.value)} />
+          </Labelled>
+        ) : (
+          <Labelled label="Speed, times its own">
+            <input type="number" min={1} max={fastest} step="any" required value={speed} onInput={({ currentTarget }) => setSpeed(currentTarget.value)} />
+          </Labelled>
+        )}
+        <button type="submit" class="main" disabled={busy || config === ''}>
+          Start
+        </button>
+      </form>
+      <ErrorBox error={error} />
+    </Panel>
+  );
+}
