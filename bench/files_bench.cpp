@@ -13,7 +13,6 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/modal/files/frf_files.hpp"
-#include "robomill/program/files/gcode.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/program/files/rewrite.hpp"
 
@@ -85,7 +84,7 @@ void read_program(benchmark::State& state) {
   constexpr int lines = 200000;
   const std::filesystem::path path = place("part.ngc");
   io::write_file(path, five_axis_moves(lines));
-  for (auto _ : state) benchmark::DoNotOptimize(program::read_gcode(path, program::Machine::xyzac_trt));
+  for (auto _ : state) benchmark::DoNotOptimize(program::read_program(path, {.machine = program::Machine::xyzac_trt}));
   state.SetItemsProcessed(state.iterations() * lines);
   std::filesystem::remove(path);
 }

@@ -80,13 +80,15 @@ void measure(Costs& costs, std::size_t hops, const Push& push) {
 }
 
 /// Hop number n of rounds that follow each other.
-std::span<const float> block_of(std::span<const float> samples, std::size_t n, int channels = 1) {
+template <class Sample>
+std::span<const Sample> block_of(const std::vector<Sample>& samples, std::size_t n, int channels = 1) {
   const std::size_t size = hop * static_cast<std::size_t>(channels);
-  return samples.subspan(n % (samples.size() / size) * size, size);
+  return std::span(samples).subspan(n % (samples.size() / size) * size, size);
 }
 
 Costs transform(std::size_t hops) {
-  const std::vector<float> samples = rounds(1);
+  const std::vector<float> given = rounds(1);
+  const std::vector<double> samples(given.begin(), given.end());
   Costs costs = {.what = "transform"};
   const double before_kib = held_kib();
   signal::SynchrosqueezeStream stream({.sample_rate_hz = rate_hz}, signal::equal_bands(rate_hz, bands));

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/program/files/gcode.hpp"
+#include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 
 namespace robomill::cell {

@@ -97,10 +97,4 @@ struct TipResult {
 [[nodiscard]] ROBOMILL_API TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz,
                                               const TipOptions& options = {});
 
-/// Receptances of segments that hang free, between their ends: point 1 is the first segment's end, 2 the last one's.
-/// FRFs 1x:1x, 1x:1my, 1ry:1x, …, 2ry:2my: sixteen, in the plane of x.
-/// @throws InvalidInput if a segment or a frequency is not valid
-[[nodiscard]] ROBOMILL_API modal::FrfSet free_frfs(const std::vector<Segment>& segments,
-                                                   const Eigen::VectorXd& frequency_hz);
-
 }  // namespace robomill::coupling

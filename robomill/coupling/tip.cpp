@@ -124,29 +124,4 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
   return result;
 }
 
-modal::FrfSet free_frfs(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
-  if (segments.empty()) throw InvalidInput("segments", "are none");
-  detail::validate_segments("segments", segments);
-  require_frequencies(frequency_hz);
-  std::vector<Eigen::Matrix4cd> receptance;
-  for (const BeamElement& element : detail::beam_elements(segments, frequency_hz)) {
-    const Eigen::Matrix2cd r22 = element.stiffness.inverse();
-    const Eigen::Matrix2cd r12 = element.carry * r22;
-    receptance.emplace_back();
-    receptance.back() << element.clamped + r12 * element.carry.transpose(), r12, r12.transpose(), r22;
-  }
-  modal::FrfSet set{.frequency_hz = frequency_hz, .frfs = {}};
-  for (int load = 0; load < 2; ++load) {
-    for (int end = 0; end < 2; ++end) {
-      const std::size_t first = set.frfs.size();
-      add_frfs(receptance, Axis::x, Axis::x, 2 * end, 2 * load, true, set);
-      for (std::size_t i = first; i < set.frfs.size(); ++i) {
-        set.frfs[i].name.response.point = end + 1;
-        set.frfs[i].name.excitation.point = load + 1;
-      }
-    }
-  }
-  return set;
-}
-
 }  // namespace robomill::coupling

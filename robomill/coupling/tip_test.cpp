@@ -11,6 +11,7 @@
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/beam_element.hpp"
 #include "testing/coupling/beams.hpp"
+#include "testing/coupling/free_beam.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
@@ -18,6 +19,7 @@ namespace tip_test {
 
 using modal::FrfSet;
 using testing::bar;
+using testing::free_frfs;
 using testing::hertz;
 using testing::peak_hz;
 using testing::published_pair;

@@ -213,9 +213,4 @@ double edge_length_per_width(const FlatEndMill& mill, int tooth, const Profile::
   return std::hypot(1.0, point.radius_m * std::sin(point.position_rad) * mill.lag_rad_per_m(tooth));
 }
 
-Eigen::Vector3d edge_position_m(const FlatEndMill& mill, int tooth, const Profile::Point& point, double rotation_rad) {
-  const double angle = rotation_rad + mill.standing_angle(tooth) - mill.lag_rad_per_m(tooth) * point.height_m;
-  return {point.radius_m * std::sin(angle), point.radius_m * std::cos(angle), point.height_m};
-}
-
 }  // namespace robomill::cutting

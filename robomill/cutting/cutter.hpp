@@ -70,8 +70,5 @@ class ROBOMILL_API Profile {
 /// tan(β_j) / D; on a ball sqrt(1 + sin⁴κ tan²β).
 [[nodiscard]] ROBOMILL_API double edge_length_per_width(const FlatEndMill& mill, int tooth,
                                                         const Profile::Point& point);
-/// Where tooth j's edge passes a height, in T [m]: φ = rotation + standing angle - lag. Runout has no part in it.
-[[nodiscard]] ROBOMILL_API Eigen::Vector3d edge_position_m(const FlatEndMill& mill, int tooth,
-                                                           const Profile::Point& point, double rotation_rad);
 
 }  // namespace robomill::cutting

@@ -169,6 +169,12 @@ TEST(Profile, IsAConvexCurveByItsLength) {
   }
 }
 
+/// Where tooth j's edge passes a height, in T [m]: φ = rotation + standing angle - lag. Runout has no part in it.
+Eigen::Vector3d edge_position_m(const FlatEndMill& mill, int tooth, const Profile::Point& point, double rotation_rad) {
+  const double angle = rotation_rad + mill.standing_angle(tooth) - mill.lag_rad_per_m(tooth) * point.height_m;
+  return {point.radius_m * std::sin(angle), point.radius_m * std::cos(angle), point.height_m};
+}
+
 // Two ways to one number: ds/db against the length of the edge's polygon in space, every shape.
 TEST(Edge, LengthPerWidthIsThatOfTheEdgeInSpace) {
   for (int seed = 0; seed < robomill::test::seeds(400); ++seed) {

@@ -326,14 +326,6 @@ double Workpiece::dexel_m() const {
   return grid_->dexel;
 }
 
-Vector3d Workpiece::lowest_m() const {
-  return grid_->lowest;
-}
-
-Vector3d Workpiece::highest_m() const {
-  return grid_->highest;
-}
-
 std::size_t Workpiece::memory_bytes() const {
   std::size_t bytes = sizeof(Grid);
   for (const Rays& rays : grid_->rays) bytes += rays.memory_bytes();

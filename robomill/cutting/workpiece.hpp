@@ -69,8 +69,6 @@ class ROBOMILL_API Workpiece {
   [[nodiscard]] double depth_m(const Eigen::Vector3d& point_m) const;
   [[nodiscard]] Eigen::Vector3d volumes_m3() const;  ///< as the rays along x, y and z see it
   [[nodiscard]] double dexel_m() const;              ///< largest of the three spacings
-  [[nodiscard]] Eigen::Vector3d lowest_m() const;
-  [[nodiscard]] Eigen::Vector3d highest_m() const;
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:

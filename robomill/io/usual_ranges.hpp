@@ -29,7 +29,7 @@ struct UsualRange {
 };
 
 /// All rows.
-[[nodiscard]] ROBOMILL_API std::span<const UsualRange> usual_ranges();
+[[nodiscard]] std::span<const UsualRange> usual_ranges();
 
 /// The row of a key: that of its whole path before that of its last part; null where there is none.
 /// @param key  "tool[0].length_mm": indices do not count

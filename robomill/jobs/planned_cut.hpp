@@ -1,12 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/base/progress.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/plan.hpp"
 
@@ -17,8 +15,6 @@ namespace robomill::jobs {
 /// The jobs whose cut a lobes.toml is, by name: the documents beside it whose job.lobes names it, as far as what their
 /// structures come from is there.
 [[nodiscard]] ROBOMILL_API std::vector<std::filesystem::path> jobs_of_cut(const std::filesystem::path& lobes);
-/// The one job whose cut it is; none where none or several are.
-[[nodiscard]] ROBOMILL_API std::optional<std::filesystem::path> job_of_cut(const std::filesystem::path& lobes);
 /// A sentence that the structure of none of several jobs was taken.
 [[nodiscard]] ROBOMILL_API std::string several_jobs_text(const std::vector<std::filesystem::path>& jobs,
                                                          const std::filesystem::path& lobes);

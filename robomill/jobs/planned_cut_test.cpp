@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/progress.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/lobes.hpp"
@@ -70,12 +71,12 @@ TEST_F(Planned, TheJobIsTheOneDocumentThatNamesTheCut) {
   folder_.file("broken.toml", "[job\nlobes = \"lobes.toml\"\n");
   folder_.file("other.toml", "[job]\nmodes = \"m.json\"\nlobes = \"another.toml\"\n");
   folder_.file("unmeasured.toml", "[job]\nhits = \"hits.toml\"\nlobes = \"lobes.toml\"\n");
-  EXPECT_FALSE(job_of_cut(lobes));
+  EXPECT_TRUE(jobs_of_cut(lobes).empty());
   const auto one = job(500.0, 0.5);
-  EXPECT_EQ(job_of_cut(lobes), one);
+  EXPECT_EQ(jobs_of_cut(lobes), std::vector{one});
   EXPECT_TRUE(has(basis(lobes).notes, "The structure and the range of speeds are those of job.toml."));
   folder_.file("second.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n");
-  EXPECT_FALSE(job_of_cut(lobes)) << "either may be meant";
+  EXPECT_EQ(jobs_of_cut(lobes).size(), 2U) << "either may be meant";
   EXPECT_TRUE(has(basis(lobes).notes,
                   "job.toml and second.toml plan the cut of lobes.toml: the structure of none of them was taken"));
 }

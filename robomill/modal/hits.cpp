@@ -298,27 +298,6 @@ FrfResult estimate_frfs(const std::vector<Hit>& hits, const HitOptions& options,
   return result;
 }
 
-ModalModel without_added_decay(const ModalModel& model, double decay_per_s) {
-  require_non_negative("decay_per_s", decay_per_s, "1/s");
-  ModalModel freed = model;
-  for (std::size_t k = 0; k < freed.modes.size(); ++k) {
-    Mode& mode = freed.modes[k];
-    const Complex moved = pole(mode) + decay_per_s;
-    if (!(moved.real() < 0.0)) {
-      throw InvalidInput("modes[" + std::to_string(k + 1) + "].damping_ratio", mode.damping_ratio, "",
-                         "is less than what the exponential window alone adds",
-                         "The mode is noise, or the window's time constant is another one");
-    }
-    const double omega = std::abs(moved);
-    // To first order the errors of pole and decay rate stay what they are.
-    const double before = 2.0 * std::numbers::pi * mode.frequency_hz;
-    mode.damping_ratio_std *= before / omega;
-    mode.frequency_hz = omega / (2.0 * std::numbers::pi);
-    mode.damping_ratio = -moved.real() / omega;
-  }
-  return freed;
-}
-
 std::array<double, 2> FrfResult::band_hz() const {
   double highest_hz = 0.0;
   for (const FrfGrade& grade : grades) highest_hz = std::max(highest_hz, grade.excited_high_hz);

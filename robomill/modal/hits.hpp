@@ -8,7 +8,6 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/modal/frf.hpp"
-#include "robomill/modal/modes.hpp"
 
 // Method: robomill/modal/README.md, "Hammer hits to FRFs (`hits.hpp`)"
 
@@ -119,7 +118,7 @@ struct FrfResult {
   /// Above it every FRF is ruled by the structure, below it one at least by the noise of the sensors.
   double lowest_trustworthy_frequency_hz = 0.0;
   double added_decay_per_s = 0.0;    ///< 1/τ of the exponential window; 0 where none was needed
-  bool added_decay_removed = false;  ///< whether `set` is free of it (else correct the modes: without_added_decay)
+  bool added_decay_removed = false;  ///< whether `set` is free of it (else FitOptions::exponential_decay_per_s)
   std::vector<FrfGrade> grades;      ///< one for each FRF of the set, in its order
   std::vector<std::string> notes;    ///< what a reader of the result must know: windows, mass, resolution
   /// Where modes can be fitted without more being said: from lowest_trustworthy_frequency_hz to the highest frequency
@@ -136,10 +135,5 @@ struct FrfResult {
 /// ch. 3; equations in robomill/modal/README.md
 [[nodiscard]] ROBOMILL_API FrfResult estimate_frfs(const std::vector<Hit>& hits, const HitOptions& options,
                                                    Progress& progress = Progress::none());
-
-/// The model whose poles are λ_k + decay_per_s: undoes what a window exp(-t decay_per_s) on force and response did to
-/// the modes.
-/// @throws InvalidInput if decay_per_s < 0, or a mode would be left with no damping
-[[nodiscard]] ROBOMILL_API ModalModel without_added_decay(const ModalModel& model, double decay_per_s);
 
 }  // namespace robomill::modal

@@ -13,6 +13,7 @@
 #include "examples/first-lobes/hammer.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/modal/modes.hpp"
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
 
@@ -236,7 +237,7 @@ TEST(EstimateFrfs, TakesOutTheDampingOfTheExponentialWindow) {
   EXPECT_GT(error(without.set, model, parse_frf_name("yy"), 15.0, 25.0), 0.1);
 }
 
-// Left in, it is exactly what without_added_decay takes off the modes: H(iω + σ) has the poles λ - σ.
+// H(iω + σ) has the poles λ - σ.
 TEST(EstimateFrfs, LeavesTheAddedDampingInWhenAsked) {
   const ModalModel model = data::robot_modes();
   Hammer hammer = quiet();
@@ -257,16 +258,6 @@ TEST(EstimateFrfs, LeavesTheAddedDampingInWhenAsked) {
   for (const char* name : {"xx", "yy"}) {
     EXPECT_LT(error(result.set, damped, parse_frf_name(name), 5.0, 1000.0), 2e-3) << name;
   }
-  const ModalModel back = without_added_decay(damped, 2.5);
-  for (std::size_t k = 0; k < 8; ++k) {
-    EXPECT_NEAR(back.modes[k].frequency_hz, model.modes[k].frequency_hz, 1e-12 * model.modes[k].frequency_hz);
-    EXPECT_NEAR(back.modes[k].damping_ratio, model.modes[k].damping_ratio, 1e-12);
-  }
-}
-
-TEST(WithoutAddedDecay, RejectsAModeThatWouldGrow) {
-  EXPECT_THROW(static_cast<void>(without_added_decay(one_mass(10.0, 0.01), 1.0)), InvalidInput);
-  EXPECT_THROW(static_cast<void>(without_added_decay(one_mass(10.0, 0.01), -1.0)), InvalidInput);
 }
 
 TEST(EstimateFrfs, RejectsADoubleHitAndSaysWhy) {

@@ -249,18 +249,6 @@ void CompensateOptions::validate() const {
   }
 }
 
-std::vector<SurfaceLeft> surface_left(const ForcesResult& forces, const DynamicsAt& dynamics,
-                                      const CompensateOptions& options, Progress& progress) {
-  options.validate();
-  SurfaceRuns runs(forces, dynamics, options, progress);
-  const Offsets none(forces.program->blocks.size(), Eigen::Vector3d::Zero());
-  std::vector<SurfaceLeft> out;
-  for (const LeftBlock& block : runs.run(forces.program->program, none)) {
-    out.push_back(left_of(block, Eigen::Vector3d::Zero()));
-  }
-  return out;
-}
-
 Compensation compensate(const ForcesResult& forces, const DynamicsAt& dynamics, const CompensateOptions& options,
                         Progress& progress) {
   options.validate();

@@ -48,17 +48,6 @@ struct SurfaceLeft {
   double rms_m = none;
 };
 
-/// Runs the program through the material, each block where its mean force bends the structure to, and finds what its
-/// blocks leave of the surface that remains at its end.
-/// @param forces    along a program, with a cell and a stock
-/// @param dynamics  empty: the static compliance of the cell's joints alone; nothing vibrates, nothing chatters
-/// @return one a block of the program
-/// @throws InvalidInput if an option is out of range, forces lack cell or stock, or dynamics do not fit a block, naming
-/// it; Interrupted
-[[nodiscard]] ROBOMILL_API std::vector<SurfaceLeft> surface_left(const ForcesResult& forces, const DynamicsAt& dynamics,
-                                                                 const CompensateOptions& options = {},
-                                                                 Progress& progress = Progress::none());
-
 /// One block of a compensated program.
 struct CompensatedBlock {
   enum class State {
@@ -95,9 +84,10 @@ struct Compensation {
 
 /// Moves the path of finishing passes by what the tool is displaced at the instant at which each place of the surface
 /// is generated, until the force of the moved path agrees with the offset. Joints are followed to the moved ends.
-/// @param forces, dynamics  as in surface_left
-/// @throws InvalidInput as surface_left; where a moved block is out of reach or takes a joint beyond its limit, naming
-/// block and line; Interrupted
+/// @param forces    along a program, with a cell and a stock
+/// @param dynamics  empty: the static compliance of the cell's joints alone; nothing vibrates, nothing chatters
+/// @throws InvalidInput if an option is out of range, forces lack cell or stock, dynamics do not fit a block, a moved
+/// block is out of reach or takes a joint beyond its limit, naming block and line; Interrupted
 [[nodiscard]] ROBOMILL_API Compensation compensate(const ForcesResult& forces, const DynamicsAt& dynamics,
                                                    const CompensateOptions& options = {},
                                                    Progress& progress = Progress::none());

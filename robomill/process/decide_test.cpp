@@ -74,11 +74,12 @@ TEST_F(Decide, IsWithinTwoPercentOfLookingAtEverySpeed) {
       if (!judged.blocks.rows[i].cuts) continue;
       const cutting::PoseEngagement& cut = judged.forces.program->cuts[i];
       for (const double factor : {0.98, 0.99, 1.0, 1.01, 1.02}) {
-        const CutStability found = cut_stability({.setup = judged.forces.cut,
-                                                  .cut = cut,
-                                                  .base_from_work = judged.forces.cell->cell.workpiece.linear(),
-                                                  .spindle_speed_rad_per_s = factor * speed * units::rpm},
-                                                 all);
+        const CutStability found = judged_cut({.setup = judged.forces.cut,
+                                               .cut = cut,
+                                               .base_from_work = judged.forces.cell->cell.workpiece.linear(),
+                                               .spindle_speed_rad_per_s = factor * speed * units::rpm},
+                                              all)
+                                       .stability;
         const double limit = std::isfinite(found.limit_depth_m) ? found.limit_depth_m : found.searched_depth_m;
         if (found.spectral_radius >= 1.0 || 1.0 - engaged_depth_m(cut) / limit < 0.2) time = 1e300;
       }

@@ -184,24 +184,6 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Arm& arm, const Eigen::R
   return out;
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian_derivative(
-    const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& jacobian, Eigen::Index joint) {
-  if (joint < 0 || joint >= jacobian.cols()) {
-    throw InvalidInput("joint", static_cast<double>(joint), "", "must be one of the Jacobian's columns, from 0");
-  }
-  Eigen::Matrix<double, 6, Eigen::Dynamic> out(6, jacobian.cols());
-  const Eigen::Vector3d turn = jacobian.col(joint).tail<3>(), move = jacobian.col(joint).head<3>();
-  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-    const Eigen::Vector3d own_turn = jacobian.col(i).tail<3>(), own_move = jacobian.col(i).head<3>();
-    if (joint < i) {
-      out.col(i) << turn.cross(own_move), turn.cross(own_turn);
-    } else {
-      out.col(i) << own_turn.cross(move), Eigen::Vector3d::Zero();
-    }
-  }
-  return out;
-}
-
 LimitCheck within_limits(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
   require_length(arm, position.size());
   LimitCheck out;

@@ -83,14 +83,6 @@ struct ROBOMILL_API Posture {
                 Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> out) const;
 };
 
-/// ∂J/∂q_k, 6 x n, of a Jacobian J with columns (v_i, w_i), from the screws alone: with a = min(i, k), b = max(i, k)
-///     ∂v_i/∂q_k = w_a × v_b,    ∂w_i/∂q_k = w_k × w_i for k < i, else 0
-/// (w = 0 for a prismatic joint).
-/// @param joint  k, from 0
-/// @throws InvalidInput if there is no such joint
-[[nodiscard]] ROBOMILL_API Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian_derivative(
-    const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& jacobian, Eigen::Index joint);
-
 /// How far a position is from the limits of its joints.
 struct LimitCheck {
   bool inside = true;       ///< min_position <= q <= max_position for every joint

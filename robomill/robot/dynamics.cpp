@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <kdl/chaindynparam.hpp>
@@ -12,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/robot/kdl_chain.hpp"
+#include "robomill/robot/stiffness.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -24,9 +24,8 @@ struct Mass {
   Eigen::MatrixXd matrix;
   Eigen::LLT<Eigen::MatrixXd> factor;
 };
-Mass factored_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, Inertia inertia) {
+Mass factored_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
   Mass out{.matrix = mass_matrix(arm, position), .factor = {}};
-  if (inertia == Inertia::diagonal) out.matrix = Eigen::MatrixXd(out.matrix.diagonal().asDiagonal());
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
     if (out.matrix(i, i) > 0.0) continue;
     throw InvalidInput("joints[" + std::to_string(i + 1) + "].link.mass_kg", 0.0, "kg",
@@ -107,21 +106,7 @@ void solve_modes(const Normal& system, ToolModes& out) {
             [](const ToolMode& a, const ToolMode& b) { return a.frequency_hz < b.frequency_hz; });
 }
 
-/// Damping that gives every undamped mode one ratio.
-Eigen::MatrixXd damping_of_ratio(const Eigen::MatrixXd& stiffness, double ratio) {
-  const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose());
-  const linear_algebra::SymmetricEigenPairs pairs = linear_algebra::symmetric_eigen_pairs(symmetric);
-  const Eigen::VectorXd rate = 2.0 * ratio * pairs.values.cwiseMax(0.0).cwiseSqrt();
-  return pairs.vectors * rate.asDiagonal() * pairs.vectors.transpose();
-}
-
 }  // namespace
-
-void ToolModesOptions::validate() const {
-  if (!damping_ratio) return;
-  require_non_negative("damping_ratio", *damping_ratio, "");
-  if (!(*damping_ratio < 1.0)) throw InvalidInput("damping_ratio", *damping_ratio, "", "must be < 1");
-}
 
 Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
   arm.validate();
@@ -136,31 +121,14 @@ Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::Vector
   return out;
 }
 
-CartesianMass cartesian_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
-                             const Eigen::Vector3d& point_m, Inertia inertia, const SingularityOptions& options) {
-  options.validate();
-  const Mass mass = factored_mass(arm, position, inertia);
+ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
+                     const Eigen::Vector3d& point_m) {
+  static_cast<void>(stiffness(arm, position, point_m));  // checks what is given
+  const Mass mass = factored_mass(arm, position);
   const Jacobian jac = jacobian(arm, position, point_m);
-  CartesianMass out;
-  out.condition_number = condition_number(jac, options.characteristic_length_m);
-  if (out.condition_number > options.max_condition_number) return out;
-  const Eigen::Matrix<double, 6, 6> mobility = jac * mass.factor.solve(jac.transpose());
-  out.mass = mobility.inverse();
-  out.status = CartesianMass::Status::regular;
-  return out;
-}
-
-ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m,
-                     const ToolModesOptions& options) {
-  options.validate();
-  ToolModes out;
-  // Checks what is given, and whether the arm holds it.
-  if (stiffness(arm, position, point_m, options.wrench).status == Stiffness::Status::buckled) return out;
-  const Mass mass = factored_mass(arm, position, options.inertia);
-  const Jacobian jac = jacobian(arm, position, point_m);
-  Eigen::MatrixXd joint = -load_stiffness(jac, options.wrench), damping = Eigen::MatrixXd::Zero(arm.size(), arm.size());
+  Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(arm.size(), arm.size()), damping = joint;
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
-    joint(i, i) += arm.joints[static_cast<std::size_t>(i)].stiffness;
+    joint(i, i) = arm.joints[static_cast<std::size_t>(i)].stiffness;
     damping(i, i) = arm.joints[static_cast<std::size_t>(i)].damping;
   }
   // In y = Lᵀ q with M = L Lᵀ.
@@ -174,25 +142,8 @@ ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& po
   system.rate_per_s = std::sqrt(system.stiffness.trace() / static_cast<double>(arm.size()));
   system.stiffness /= system.rate_per_s * system.rate_per_s;
   system.damping /= system.rate_per_s;
-  if (options.damping_ratio) system.damping = damping_of_ratio(system.stiffness, *options.damping_ratio);
+  ToolModes out;
   solve_modes(system, out);
-  out.status = ToolModes::Status::found;
-  return out;
-}
-
-Eigen::Matrix<Complex, 6, 6> ToolModes::receptance(double frequency_hz) const {
-  const Complex s(0.0, 2.0 * std::numbers::pi * frequency_hz);
-  Eigen::Matrix<Complex, 6, 6> out = Eigen::Matrix<Complex, 6, 6>::Zero();
-  for (const ToolMode& mode : modes) {
-    const double rate = 2.0 * std::numbers::pi * mode.frequency_hz;
-    const Complex pole(-mode.damping_ratio * rate,
-                       rate * std::sqrt(std::max(0.0, 1.0 - mode.damping_ratio * mode.damping_ratio)));
-    const Eigen::Matrix<Complex, 6, 6> residue = mode.right * mode.left.transpose();
-    out += residue / (s - pole) + residue.conjugate() / (s - std::conj(pole));
-  }
-  for (const OverdampedMode& mode : overdamped) {
-    out += (mode.right * mode.left.transpose()).cast<Complex>() / (s + mode.decay_per_s);
-  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/robot/choose.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -47,14 +48,7 @@ class Turn {
   /// What is to be least; infinite where there is no posture.
   [[nodiscard]] double cost(const RedundancySample& sample) const {
     if (sample.status != Reach::Status::found || sample.buckled) return std::numeric_limits<double>::infinity();
-    switch (options_.least) {
-      case RedundancyOptions::Least::error:
-        return sample.error_m.norm();
-      case RedundancyOptions::Least::error_along_normal:
-        return std::abs(sample.error_along_normal_m);
-      default:
-        return sample.condition_number;
-    }
+    return sample.error_m.norm();
   }
 
   /// The least cost in [from, to] on the branch of `sample`, which lies between.
@@ -127,8 +121,7 @@ void RedundancyOptions::validate() const {
   } catch (const InvalidInput& error) {
     throw within("singularity.", error);
   }
-  const bool needs_force = least != Least::condition_number;
-  if (needs_force && force_n.isZero(0.0)) {
+  if (force_n.isZero(0.0)) {
     throw InvalidInput("force_n", "must not be zero: without a force there is no error to make least");
   }
 }

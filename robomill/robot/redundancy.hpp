@@ -5,8 +5,8 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
-#include "robomill/robot/choose.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 
@@ -15,14 +15,7 @@
 namespace robomill::robot {
 
 struct ROBOMILL_API RedundancyOptions {
-  /// What the best gamma makes least.
-  enum class Least {
-    error,               ///< |C F|, the length of the tip's error; needs force_n
-    error_along_normal,  ///< |normal · C F|, what the surface sees of it; needs force_n
-    condition_number     ///< of the Jacobian at the tip, whatever the force: farthest from a singular posture
-  };
-  Least least = Least::error;
-  Eigen::Vector3d force_n = Eigen::Vector3d::Zero();  ///< of the cut on the robot at the tip, in W
+  Eigen::Vector3d force_n = Eigen::Vector3d::Zero();  ///< of the cut on the robot at the tip, in W; required
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of the surface, in W, unit: ||normal| − 1| <= 1e-6
   int samples = 72;                                   ///< >= 4; over a full turn
   double tolerance_rad = 1e-4;                        ///< > 0; ends where the range that holds gamma is <= this
@@ -56,10 +49,11 @@ struct Redundancy {
 };
 
 /// What turning the flange about the tool's axis does to a cut: every gamma's posture, stiffness and error, and the
-/// best gamma, refined between the samples on its branch by golden section.
+/// best gamma, at which the length of the tip's error |C F| is least, refined between the samples on its branch by
+/// golden section.
 /// @param tool  its gamma is not used
 /// @throws InvalidInput if an option is invalid, the cell is invalid, or a joint has no stiffness
 [[nodiscard]] ROBOMILL_API Redundancy redundancy(const Cell& cell, const SphericalWristInverse& inverse,
-                                                 const ToolPose& tool, const RedundancyOptions& options = {});
+                                                 const ToolPose& tool, const RedundancyOptions& options);
 
 }  // namespace robomill::robot

@@ -9,6 +9,7 @@
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
 #include "testing/robot/arms.hpp"
+#include "testing/robot/jacobian.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::robot {
@@ -108,7 +109,7 @@ TEST(Stiffness, IsNotWhatTheMisprintGives) {
     force << wrench.force_n, wrench.moment_n_m;
     Matrix6 joint = Matrix6::Zero();
     for (int k = 0; k < 6; ++k) {
-      joint.col(k) = inverse * jacobian_derivative(jac, k).transpose() * inverse * force;
+      joint.col(k) = inverse * testing::jacobian_derivative(jac, k).transpose() * inverse * force;
       joint(k, k) += arm.joints[static_cast<std::size_t>(k)].stiffness;
     }
     const Matrix6 printed = jac * linear_algebra::inverse(Eigen::MatrixXd(joint)) * jac.transpose();
@@ -130,7 +131,7 @@ TEST(Stiffness, LoadStiffnessIsTheDerivativeOfTheTorque) {
     const Jacobian jac = jacobian(arm, position, tip);
     const Eigen::MatrixXd kc = load_stiffness(jac, wrench);
     for (Eigen::Index i = 0; i < 6; ++i) {
-      EXPECT_LT((kc.col(i) - jacobian_derivative(jac, i).transpose() * stacked).norm(), 1e-13);
+      EXPECT_LT((kc.col(i) - testing::jacobian_derivative(jac, i).transpose() * stacked).norm(), 1e-13);
     }
   }
 }

@@ -55,14 +55,6 @@ Eigen::VectorXcd transform(const Eigen::VectorXcd& x, bool inverse) {
 
 }  // namespace
 
-Eigen::VectorXcd fft(const Eigen::Ref<const Eigen::VectorXcd>& x) {
-  return transform(x, false);
-}
-
-Eigen::VectorXcd inverse_fft(const Eigen::Ref<const Eigen::VectorXcd>& spectrum) {
-  return transform(spectrum, true) / static_cast<double>(spectrum.size());
-}
-
 Eigen::VectorXcd real_fft(const Eigen::Ref<const Eigen::VectorXd>& x) {
   return transform(x.cast<Complex>(), false).head(x.size() / 2 + 1);
 }
@@ -76,7 +68,7 @@ Eigen::VectorXd inverse_real_fft(const Eigen::Ref<const Eigen::VectorXcd>& half,
   full(0) = half(0).real();
   if (n % 2 == 0) full(n / 2) = half(n / 2).real();
   for (Eigen::Index k = 1; k < (n + 1) / 2; ++k) full(n - k) = std::conj(half(k));
-  return inverse_fft(full).real();
+  return transform(full, true).real() / static_cast<double>(n);
 }
 
 }  // namespace robomill::signal

@@ -7,13 +7,10 @@
 
 namespace robomill::signal {
 
-/// X_k = Σ_j x_j exp(-2πi jk/n), of any length n >= 1 (prime factors above 50 by Bluestein's method). [Bluestein1970]
+/// The lines k = 0 … n/2 (rounded down) of X_k = Σ_j x_j exp(-2πi jk/n), of any length n >= 1 (prime factors above 50
+/// by Bluestein's method). [Bluestein1970]
 /// @param x  length n
 /// @throws InvalidInput if x is empty
-[[nodiscard]] ROBOMILL_API Eigen::VectorXcd fft(const Eigen::Ref<const Eigen::VectorXcd>& x);
-/// x_j = (1/n) Σ_k X_k exp(+2πi jk/n); the inverse of fft.
-[[nodiscard]] ROBOMILL_API Eigen::VectorXcd inverse_fft(const Eigen::Ref<const Eigen::VectorXcd>& spectrum);
-/// The lines k = 0 … n/2 (rounded down) of the transform of a real signal of length n.
 [[nodiscard]] ROBOMILL_API Eigen::VectorXcd real_fft(const Eigen::Ref<const Eigen::VectorXd>& x);
 /// The real signal of length n whose real_fft is `half` (length n/2 + 1, rounded down); imaginary parts that no real
 /// signal can have (at zero and, for even n, at the last line) are dropped.

@@ -11,10 +11,10 @@
 namespace robomill::signal {
 namespace fft_test {
 
-Eigen::VectorXcd random_signal(Eigen::Index n) {
+Eigen::VectorXd random_signal(Eigen::Index n) {
   Random random(static_cast<std::uint64_t>(n));
-  Eigen::VectorXcd x(n);
-  for (Eigen::Index i = 0; i < n; ++i) x(i) = {random.normal(), random.normal()};
+  Eigen::VectorXd x(n);
+  for (double& value : x) value = random.normal();
   return x;
 }
 
@@ -22,9 +22,10 @@ class Fft : public ::testing::TestWithParam<int> {};
 
 TEST_P(Fft, IsTheDefiningSum) {
   const Eigen::Index n = GetParam();
-  const Eigen::VectorXcd x = random_signal(n);
-  const Eigen::VectorXcd spectrum = fft(x);
-  for (Eigen::Index k = 0; k < n; k += 1 + n / 13) {
+  const Eigen::VectorXd x = random_signal(n);
+  const Eigen::VectorXcd spectrum = real_fft(x);
+  ASSERT_EQ(spectrum.size(), n / 2 + 1);
+  for (Eigen::Index k = 0; k < spectrum.size(); k += 1 + n / 26) {
     std::complex<double> sum = 0.0;
     for (Eigen::Index j = 0; j < n; ++j) {
       sum +=
@@ -35,17 +36,15 @@ TEST_P(Fft, IsTheDefiningSum) {
 }
 
 TEST_P(Fft, InverseGivesTheSignalBack) {
-  const Eigen::VectorXcd x = random_signal(GetParam());
-  EXPECT_LT((inverse_fft(fft(x)) - x).norm(), 1e-13 * x.norm());
-  const Eigen::VectorXd real = x.real();
-  EXPECT_LT((inverse_real_fft(real_fft(real), real.size()) - real).norm(), 1e-13 * real.norm());
+  const Eigen::VectorXd x = random_signal(GetParam());
+  EXPECT_LT((inverse_real_fft(real_fft(x), x.size()) - x).norm(), 1e-13 * x.norm());
 }
 
 // 2 · 53 and the primes go through Bluestein's method, the others through the mixed radix.
 INSTANTIATE_TEST_SUITE_P(Lengths, Fft, testing::Values(1, 2, 3, 4, 5, 7, 16, 47, 53, 106, 360, 997, 1024, 4099));
 
 TEST(FftInput, RejectsEmptyAndMisfit) {
-  EXPECT_THROW(static_cast<void>(fft(Eigen::VectorXcd())), InvalidInput);
+  EXPECT_THROW(static_cast<void>(real_fft(Eigen::VectorXd())), InvalidInput);
   EXPECT_THROW(static_cast<void>(inverse_real_fft(Eigen::VectorXcd::Zero(3), 6)), InvalidInput);
 }
 

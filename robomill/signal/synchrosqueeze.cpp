@@ -59,18 +59,6 @@ void use_large_pages(Eigen::MatrixXcd& matrix) {
 #endif
 }
 
-void require_lines(const Eigen::Ref<const Eigen::MatrixXcd>& squeezed, const SynchrosqueezeOptions& options) {
-  options.validate();
-  if (squeezed.rows() != options.lines()) {
-    throw InvalidInput("squeezed", static_cast<double>(squeezed.rows()), "lines", "must be N/2 + 1");
-  }
-}
-
-double scale_of(const SynchrosqueezeOptions& options) {
-  const Eigen::VectorXd g = window_samples(options.window, options.window_length);
-  return 1.0 / (static_cast<double>(options.window_length) * g(options.window_length / 2));
-}
-
 }  // namespace
 
 void SynchrosqueezeOptions::validate() const {
@@ -79,7 +67,6 @@ void SynchrosqueezeOptions::validate() const {
     throw InvalidInput("window_length", static_cast<double>(window_length), "samples", "must be even, 8 to 65536");
   }
   if (hop < 1) throw InvalidInput("hop", static_cast<double>(hop), "samples", "must be at least 1");
-  window.validate();
   require_non_negative("threshold", threshold, "");
 }
 
@@ -115,28 +102,6 @@ Synchrosqueezed synchrosqueeze(const Eigen::Ref<const Eigen::VectorXd>& x, const
     if (keep == Keep::both) engine.transform(out.transform.col(column).data());
     engine.squeezed(out.squeezed.col(column).data());
   });
-  return out;
-}
-
-Eigen::VectorXd reconstruct(const Eigen::Ref<const Eigen::MatrixXcd>& squeezed, const SynchrosqueezeOptions& options) {
-  require_lines(squeezed, options);
-  return scale_of(options) * squeezed.real().colwise().sum().transpose();
-}
-
-Eigen::MatrixXd reconstruct_bands(const Eigen::Ref<const Eigen::MatrixXcd>& squeezed,
-                                  const SynchrosqueezeOptions& options,
-                                  const Eigen::Ref<const Eigen::VectorXd>& edges_hz) {
-  require_lines(squeezed, options);
-  const std::vector<std::uint8_t> band = bands_of_lines(options, edges_hz);
-  const Eigen::Index bands = edges_hz.size() - 1;
-  const double scale = scale_of(options);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(bands, squeezed.cols());
-  for (Eigen::Index m = 0; m < squeezed.cols(); ++m) {
-    for (Eigen::Index k = 0; k < squeezed.rows(); ++k) {
-      const auto b = static_cast<Eigen::Index>(band[static_cast<std::size_t>(k)]);
-      if (b < bands) out(b, m) += scale * squeezed(k, m).real();
-    }
-  }
   return out;
 }
 

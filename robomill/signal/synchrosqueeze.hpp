@@ -26,7 +26,7 @@ struct SynchrosqueezeOptions {
   double sample_rate_hz = 0.0;       ///< > 0; required
   Eigen::Index window_length = 512;  ///< N [samples], even, 8 … 65536
   Eigen::Index hop = 1;              ///< between columns [samples], >= 1; they stand at its multiples
-  WindowShape window = {};
+  WindowKind window = WindowKind::hann;
   double threshold = 0.0;  ///< a coefficient of |V_g| <= threshold Σg/2 stays: of a sine of that amplitude. >= 0
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;
@@ -47,7 +47,7 @@ struct Synchrosqueezed {
 /// What is kept of a record: 8 N bytes a column each.
 enum class Keep {
   both,     ///< V_g and the squeezed columns
-  squeezed  ///< the squeezed columns alone, which is all that reconstruct needs: half the memory
+  squeezed  ///< the squeezed columns alone, which sum to the signal: half the memory
 };
 
 /// The whole of a record, on the threads of parallel_for; columns at 0, hop, 2 hop … below its length.
@@ -56,20 +56,9 @@ enum class Keep {
 [[nodiscard]] ROBOMILL_API Synchrosqueezed synchrosqueeze(const Eigen::Ref<const Eigen::VectorXd>& x,
                                                           const SynchrosqueezeOptions& options, Keep keep = Keep::both);
 
-/// x at the columns: Re Σ_k squeezed / (N g(0)).
-/// @throws InvalidInput if the lines are not those of the options
-[[nodiscard]] ROBOMILL_API Eigen::VectorXd reconstruct(const Eigen::Ref<const Eigen::MatrixXcd>& squeezed,
-                                                       const SynchrosqueezeOptions& options);
-
-/// The bands' shares of x at the columns, bands × columns, from the same sum over the lines with edges_hz(b) <= f <
-/// edges_hz(b + 1); the last band has its upper edge too. Bands that cover 0 … f_s/2 sum to x.
+/// The bands' shares of x at the columns, bands × columns: the sum over the lines with edges_hz(b) <= f < edges_hz(b +
+/// 1); the last band has its upper edge too. Bands that cover 0 … f_s/2 sum to x.
 /// @param edges_hz  length bands + 1, rising, 1 to 255 bands
-/// @throws InvalidInput if the lines or the edges make no sense
-[[nodiscard]] ROBOMILL_API Eigen::MatrixXd reconstruct_bands(const Eigen::Ref<const Eigen::MatrixXcd>& squeezed,
-                                                             const SynchrosqueezeOptions& options,
-                                                             const Eigen::Ref<const Eigen::VectorXd>& edges_hz);
-
-/// The same bands × columns straight from the record; stores no lines.
 /// @throws InvalidInput if x, an option or the edges make no sense
 [[nodiscard]] ROBOMILL_API Eigen::MatrixXd band_signals(const Eigen::Ref<const Eigen::VectorXd>& x,
                                                         const SynchrosqueezeOptions& options,
@@ -83,7 +72,7 @@ class SynchrosqueezeEngine;
 /// changes no bit.
 class ROBOMILL_API SynchrosqueezeStream {
  public:
-  /// @param edges_hz  of the bands, as reconstruct_bands; empty: none
+  /// @param edges_hz  of the bands, as band_signals; empty: none
   /// @throws InvalidInput if an option or the edges make no sense
   explicit SynchrosqueezeStream(const SynchrosqueezeOptions& options, const Eigen::VectorXd& edges_hz = {});
   ~SynchrosqueezeStream();
@@ -98,21 +87,16 @@ class ROBOMILL_API SynchrosqueezeStream {
     std::size_t columns = 0;  ///< written to the output
   };
   /// Takes samples until none is left or `band_signals`, of `bands()` values a column, has no room for the next one.
-  Progress push(std::span<const float> samples, std::span<double> band_signals) noexcept;
   Progress push(std::span<const double> samples, std::span<double> band_signals) noexcept;
 
   /// The sample at which the newest column stands, counted from the first pushed as 0.
   [[nodiscard]] std::uint64_t centre() const noexcept;
   /// The bands' shares of the signal there.
   [[nodiscard]] std::span<const double> band_values() const noexcept;
-  /// V_g there, N/2 + 1 lines.
-  void transform(std::span<std::complex<double>> out) const noexcept;
   /// The squeezed column, N/2 + 1 lines.
   void squeezed(std::span<std::complex<double>> out) const noexcept;
   [[nodiscard]] std::size_t bands() const noexcept;
   [[nodiscard]] std::size_t lines() const noexcept;
-  /// Between a column's centre and its last sample: N/2 - 1 [samples].
-  [[nodiscard]] std::size_t latency() const noexcept;
   /// As after construction.
   void reset() noexcept;
 

@@ -54,7 +54,7 @@ SynchrosqueezeEngine::SynchrosqueezeEngine(const SynchrosqueezeOptions& options,
       lines(static_cast<std::size_t>(options.lines())),
       hop(static_cast<std::uint64_t>(options.hop)),
       fft_(n, false) {
-  slides_ = !options.window.cosines().empty() && options.hop <= longest_sliding_hop;
+  slides_ = options.hop <= longest_sliding_hop;
   groups_ = (lines + lane_count - 1) / lane_count;
   // Whole groups read their neighbours, also where only their first lines count.
   slide_groups_ = (pad + groups_ * lane_count + max_cosines - 1 + lane_count - 1) / lane_count;
@@ -117,7 +117,7 @@ void SynchrosqueezeEngine::set_tables(const SynchrosqueezeOptions& options) {
   fresh_im_.resize(fresh_groups_);
   squeeze_.re = data(re_) + pad;
   squeeze_.im = data(im_) + pad;
-  const std::vector<double> cosines = options.window.cosines();
+  const std::vector<double> cosines = window_cosines(options.window);
   squeeze_.terms = cosines.size();
   for (std::size_t j = 0; j < cosines.size(); ++j) {
     const double alternating = j % 2 == 1 ? -cosines[j] : cosines[j];

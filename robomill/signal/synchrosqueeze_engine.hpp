@@ -14,9 +14,8 @@
 
 namespace robomill::signal {
 
-/// Windows that are cosine sums and close columns slide: N/2 + 1 lines of the rectangular window take in a sample with
-/// one turn each, and a window is the sum of a few neighbouring lines. Otherwise x g + i x g' goes through one FFT a
-/// column.
+/// Close columns slide: N/2 + 1 lines of the rectangular window take in a sample with one turn each, and a window is
+/// the sum of a few neighbouring lines. Otherwise x g + i x g' goes through one FFT a column.
 ///
 /// Rounding of the sliding lines is bounded: a quarter of the lines is summed anew from zero over each N samples, so
 /// that no line carries more than 4 N samples' rounding.

@@ -7,7 +7,7 @@
 
 namespace robomill::signal {
 
-inline constexpr std::size_t max_cosines = 5;
+inline constexpr std::size_t max_cosines = 4;  // of Blackman–Harris
 inline constexpr std::size_t band_reach = 8;
 inline constexpr std::size_t far_groups = 48;
 

@@ -18,15 +18,28 @@ namespace synchrosqueeze_test {
 
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
-constexpr WindowKind all_kinds[] = {
-    WindowKind::hann,    WindowKind::hamming,  WindowKind::blackman, WindowKind::blackman_harris,
-    WindowKind::nuttall, WindowKind::flat_top, WindowKind::gaussian, WindowKind::kaiser};
+constexpr WindowKind all_kinds[] = {WindowKind::hann, WindowKind::blackman_harris};
 
 Eigen::VectorXd noise(Eigen::Index n, std::uint64_t seed) {
   Random random(seed);
   Eigen::VectorXd x(n);
   for (double& value : x) value = random.normal();
   return x;
+}
+
+/// The bands' shares of the signal from stored columns, line by line.
+Eigen::MatrixXd sums_of_lines(const Eigen::MatrixXcd& squeezed, const SynchrosqueezeOptions& o,
+                              const Eigen::VectorXd& edges_hz) {
+  const Eigen::Index bands = edges_hz.size() - 1;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(bands, squeezed.cols());
+  for (Eigen::Index k = 0; k < squeezed.rows(); ++k) {
+    const double f = static_cast<double>(k) * o.sample_rate_hz / static_cast<double>(o.window_length);
+    for (Eigen::Index b = 0; b < bands; ++b) {
+      if (f < edges_hz(b) || f > edges_hz(b + 1) || (f == edges_hz(b + 1) && b + 1 < bands)) continue;
+      out.row(b) += squeezed.row(k).real() / static_cast<double>(o.window_length);
+    }
+  }
+  return out;
 }
 
 /// Σ_d x_{m+d} w(d) e^{-2πikd/N}, term by term.
@@ -48,7 +61,7 @@ struct Case {
 class SynchrosqueezeCases : public ::testing::TestWithParam<Case> {
  protected:
   [[nodiscard]] static SynchrosqueezeOptions options(Eigen::Index n = 64) {
-    return {.sample_rate_hz = 1000.0, .window_length = n, .hop = GetParam().hop, .window = {GetParam().kind}};
+    return {.sample_rate_hz = 1000.0, .window_length = n, .hop = GetParam().hop, .window = GetParam().kind};
   }
 };
 
@@ -86,8 +99,9 @@ TEST_P(SynchrosqueezeCases, BandsSumToTheSignal) {
     edges *= 500.0 / edges(edges.size() - 1);
     edges(edges.size() - 1) = 500.0;
     const Synchrosqueezed out = synchrosqueeze(x, o);
-    const Eigen::VectorXd whole = reconstruct(out.squeezed, o);
-    const Eigen::MatrixXd bands = reconstruct_bands(out.squeezed, o, edges), direct = band_signals(x, o, edges);
+    const Eigen::VectorXd whole =
+        out.squeezed.real().colwise().sum().transpose() / static_cast<double>(o.window_length);
+    const Eigen::MatrixXd bands = sums_of_lines(out.squeezed, o, edges), direct = band_signals(x, o, edges);
     for (Eigen::Index column = 0; column < whole.size(); ++column) {
       EXPECT_NEAR(whole(column), x(column * o.hop), 1e-12);
       EXPECT_NEAR(bands.col(column).sum(), x(column * o.hop), 1e-12);
@@ -103,7 +117,7 @@ TEST_P(SynchrosqueezeCases, BandsMayBeNarrowAndLeaveLinesOut) {
   Eigen::VectorXd fine = Eigen::VectorXd::LinSpaced(252, 30.0, 400.0), rough(4);
   rough << 77.0, 78.0, 120.0, 480.0;
   for (const Eigen::VectorXd& edges : {fine, rough}) {
-    const Eigen::MatrixXd stored = reconstruct_bands(synchrosqueeze(x, o).squeezed, o, edges);
+    const Eigen::MatrixXd stored = sums_of_lines(synchrosqueeze(x, o).squeezed, o, edges);
     EXPECT_LT((stored - band_signals(x, o, edges)).cwiseAbs().maxCoeff(), 1e-13);
   }
 }
@@ -127,7 +141,7 @@ Eigen::Index highest(const Eigen::MatrixXcd& squeezed, Eigen::Index column) {
 // Away from the other tone's skirt all of a tone goes to the line nearest to it, wherever it lies between lines.
 TEST(Synchrosqueeze, GathersTwoTonesInTheirLines) {
   const double rate_hz = 10240.0;
-  const SynchrosqueezeOptions o = {.sample_rate_hz = rate_hz, .hop = 64, .window = {WindowKind::blackman_harris}};
+  const SynchrosqueezeOptions o = {.sample_rate_hz = rate_hz, .hop = 64, .window = WindowKind::blackman_harris};
   const double first_hz = 683.6, second_hz = 2107.3;
   Eigen::VectorXd x(8192);
   for (Eigen::Index m = 0; m < x.size(); ++m) {
@@ -144,38 +158,6 @@ TEST(Synchrosqueeze, GathersTwoTonesInTheirLines) {
     EXPECT_LT(std::abs(scale * out.squeezed(first, column) - std::polar(1.3, 2.0 * pi * first_hz * t + 0.4)), 2e-3);
     EXPECT_LT(std::abs(scale * out.squeezed(second, column) - std::polar(0.7, 2.0 * pi * second_hz * t - 1.1)), 2e-3);
   }
-}
-
-// A Gaussian window on a linear chirp, in closed form: V_g is a Gaussian in η around the frequency f at the centre and
-// ω̂ = f + (η - f) r/(1 + r), r = (2π c s²)² with rate of change c and window e^{-t²/(2 s²)}.
-TEST(Synchrosqueeze, SeesALinearChirpAsTheClosedFormSays) {
-  const double rate_hz = 10240.0, c_hz_per_s = 3000.0, s = 0.125 * 512.0 / rate_hz;
-  const SynchrosqueezeOptions o = {
-      .sample_rate_hz = rate_hz, .window_length = 512, .hop = 100, .window = {WindowKind::gaussian}};
-  Eigen::VectorXd x(10240);
-  for (Eigen::Index m = 0; m < x.size(); ++m) {
-    const double t = static_cast<double>(m) / rate_hz;
-    x(m) = std::cos(2.0 * pi * (800.0 + 0.5 * c_hz_per_s * t) * t);
-  }
-  const Synchrosqueezed out = synchrosqueeze(x, o);
-  const double r = std::pow(2.0 * pi * c_hz_per_s * s * s, 2);
-  int moved = 0;
-  for (Eigen::Index column = 5; column < 97; ++column) {
-    const double f = 800.0 + c_hz_per_s * out.time_s(column);
-    Eigen::VectorXcd expected = Eigen::VectorXcd::Zero(257);
-    const auto middle = static_cast<Eigen::Index>(std::lround(f / 20.0));
-    bool clear = true;  // no ω̂ lies near the middle between two lines
-    for (Eigen::Index k = middle - 4; k <= middle + 4; ++k) {
-      const double line = (f + (20.0 * static_cast<double>(k) - f) * r / (1.0 + r)) / 20.0;
-      clear = clear && std::abs(line - std::floor(line) - 0.5) > 0.02;
-      expected(std::lround(line)) += 2.0 * out.transform(k, column);
-    }
-    if (!clear) continue;
-    ++moved;
-    EXPECT_LT(std::abs(out.squeezed(middle, column) - expected(middle)), 0.02 * std::abs(expected(middle)))
-        << "column " << column;
-  }
-  EXPECT_GT(moved, 40);
 }
 
 TEST(Synchrosqueeze, SmallCoefficientsKeepTheirLine) {
@@ -210,20 +192,18 @@ TEST(Synchrosqueeze, DoesNotDependOnThreads) {
 TEST(SynchrosqueezeStream, GivesTheNumbersOfTheWholeRecord) {
   for (const WindowKind kind : all_kinds) {
     for (const Eigen::Index hop : {1, 7, 256}) {
-      const SynchrosqueezeOptions o = {.sample_rate_hz = 1000.0, .window_length = 96, .hop = hop, .window = {kind}};
+      const SynchrosqueezeOptions o = {.sample_rate_hz = 1000.0, .window_length = 96, .hop = hop, .window = kind};
       const Eigen::VectorXd x = noise(2500, 5), edges = equal_bands(1000.0, 5);
       const Synchrosqueezed whole = synchrosqueeze(x, o);
       const Eigen::MatrixXd bands = band_signals(x, o, edges);
       SynchrosqueezeStream stream(o, edges);
-      Eigen::VectorXcd transform(49), squeezed(49);
+      Eigen::VectorXcd squeezed(49);
       Eigen::Index column = 0;
       for (Eigen::Index m = 0; m < x.size() + 47; ++m) {
         if (!stream.push(m < x.size() ? x(m) : 0.0)) continue;
         ASSERT_EQ(stream.centre(), static_cast<std::uint64_t>(column * hop));
-        ASSERT_EQ(stream.centre() + stream.latency(), static_cast<std::uint64_t>(m));
-        stream.transform({transform.data(), 49});
+        ASSERT_EQ(column * hop + 47, m);
         stream.squeezed({squeezed.data(), 49});
-        ASSERT_LT((transform - whole.transform.col(column)).cwiseAbs().maxCoeff(), 2e-12);
         ASSERT_LT((squeezed - whole.squeezed.col(column)).cwiseAbs().maxCoeff(), 4e-12);
         for (Eigen::Index b = 0; b < 5; ++b) {
           ASSERT_NEAR(stream.band_values()[static_cast<std::size_t>(b)], bands(b, column), 1e-13);
@@ -239,16 +219,16 @@ TEST(SynchrosqueezeStream, AnySplitGivesTheSameBits) {
   for (const Eigen::Index hop : {1, 3, 64}) {
     const SynchrosqueezeOptions o = {.sample_rate_hz = 1000.0, .window_length = 64, .hop = hop};
     const Eigen::VectorXd edges = equal_bands(1000.0, 4), x = noise(5000, 6);
-    std::vector<float> samples(x.begin(), x.end());
+    const auto size_of_x = static_cast<std::size_t>(x.size());
     const auto run = [&](std::uint64_t seed) {
       SynchrosqueezeStream stream(o, edges);
       Random random(seed);
       std::vector<double> out, room(4 * 200);
-      for (std::size_t at = 0; at < samples.size();) {
-        const std::size_t size = std::min(samples.size() - at, 1 + static_cast<std::size_t>(random.index(170)));
+      for (std::size_t at = 0; at < size_of_x;) {
+        const std::size_t size = std::min(size_of_x - at, 1 + static_cast<std::size_t>(random.index(170)));
         const std::size_t columns = 1 + static_cast<std::size_t>(random.index(200));  // perhaps too few for all of it
         const auto done =
-            stream.push(std::span<const float>(samples).subspan(at, size), std::span<double>(room).first(4 * columns));
+            stream.push(std::span<const double>(x.data() + at, size), std::span<double>(room).first(4 * columns));
         EXPECT_LE(done.columns, columns);
         out.insert(out.end(), room.begin(), room.begin() + static_cast<std::ptrdiff_t>(4 * done.columns));
         at += done.samples;
@@ -263,7 +243,8 @@ TEST(SynchrosqueezeStream, AnySplitGivesTheSameBits) {
 
 TEST(SynchrosqueezeStream, EveryKernelGivesTheSameBits) {
   const Kernels best = kernels();
-  const SynchrosqueezeOptions o = {.sample_rate_hz = 1000.0, .window_length = 64, .window = {WindowKind::nuttall}};
+  const SynchrosqueezeOptions o = {
+      .sample_rate_hz = 1000.0, .window_length = 64, .window = WindowKind::blackman_harris};
   const Eigen::VectorXd x = noise(2000, 7), edges = equal_bands(1000.0, 16);
   const auto run = [&](Kernels choice) {
     kernels() = choice;
@@ -321,15 +302,15 @@ TEST(SynchrosqueezeStream, ResetIsAsNew) {
 }
 
 TEST(SynchrosqueezeStream, AllocatesNothing) {
-  for (const WindowKind kind : {WindowKind::hann, WindowKind::kaiser}) {
+  for (const WindowKind kind : all_kinds) {
     for (const Eigen::Index n : {512, 510, 2 * 61}) {
-      SynchrosqueezeStream stream({.sample_rate_hz = 1000.0, .window_length = n, .hop = 8, .window = {kind}},
+      SynchrosqueezeStream stream({.sample_rate_hz = 1000.0, .window_length = n, .hop = 8, .window = kind},
                                   equal_bands(1000.0, 16));
       std::vector<double> out(16 * 200);
-      std::vector<float> block(1500, 0.25F);
+      std::vector<double> block(1500, 0.25);
       std::vector<Complex> column(stream.lines());
       EXPECT_EQ(test::allocations([&] {
-                  static_cast<void>(stream.push(std::span<const float>(block), out));
+                  static_cast<void>(stream.push(block, out));
                   for (int m = 0; m < 50; ++m) {
                     if (stream.push(0.1 * m)) stream.squeezed(column);
                   }
@@ -358,7 +339,6 @@ TEST(Synchrosqueeze, RejectsWhatMakesNoSense) {
   EXPECT_EQ(test::field_of([&] { static_cast<void>(synchrosqueeze(Eigen::VectorXd(), o)); }), "signal");
   EXPECT_EQ(test::field_of([&] { static_cast<void>(band_signals(x, o, Eigen::VectorXd::Zero(1))); }), "edges_hz");
   EXPECT_EQ(test::field_of([&] { static_cast<void>(SynchrosqueezeStream(o, Eigen::Vector3d(0, 9, 9))); }), "edges_hz");
-  EXPECT_EQ(test::field_of([&] { static_cast<void>(reconstruct(Eigen::MatrixXcd(5, 2), o)); }), "squeezed");
 }
 
 TEST(EqualBands, CoverHalfTheRate) {

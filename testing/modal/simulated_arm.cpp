@@ -11,8 +11,8 @@
 
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/modal/structure.hpp"
 #include "robomill/robot/stiffness.hpp"
+#include "testing/modal/structure.hpp"
 #include "testing/robot/arms.hpp"
 
 namespace robomill::modal::testing {

@@ -17,7 +17,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/program/files/gcode.hpp"
+#include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/files/geometry_toml.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
 #include "robomill/robot/files/pose_toml.hpp"

@@ -11,6 +11,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "testing/coupling/free_beam.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
@@ -400,7 +401,7 @@ TEST(AssemblyToml, TakesAnArtefactOff) {
   const test::Folder folder;
   const modal::FrfSet holder = holder_frfs();
   const Eigen::VectorXd& f = holder.frequency_hz;
-  const modal::FrfSet end = free_frfs({steel(0.02, 0.012)}, f);
+  const modal::FrfSet end = testing::free_frfs({steel(0.02, 0.012)}, f);
   const modal::FrfSet rest =
       tip_frfs({.tool = {steel(0.04, 0.012)}, .joint = {}, .holder = {.receptances = holder}}, f, {.rotations = true})
           .frfs;

@@ -57,11 +57,6 @@ std::vector<fs::path> jobs_of_cut(const fs::path& lobes) {
   return out;
 }
 
-std::optional<fs::path> job_of_cut(const fs::path& lobes) {
-  const std::vector<fs::path> jobs = jobs_of_cut(lobes);
-  return jobs.size() == 1 ? std::optional(jobs.front()) : std::nullopt;
-}
-
 std::string several_jobs_text(const std::vector<fs::path>& jobs, const fs::path& lobes) {
   std::string names;
   for (std::size_t i = 0; i < jobs.size(); ++i) {

@@ -81,7 +81,7 @@ TEST_F(FinishedSurface, IsWhatLaterPassesLeave) {
     const ForcesResult forces = forces_of(to_and_fro(beside_mm));
     const ProgramBlocks blocks =
         judge_blocks(forces, dynamics(), {.joint_tolerance_rad = 0.0, .cut_tolerance = 0.0, .scan_points = 0});
-    const std::vector<SurfaceLeft> left = surface_left(forces, dynamics());
+    const std::vector<CompensatedBlock> left = compensate(forces, dynamics(), {.most_passes = 1}).blocks;
     for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
       const BlockRow& row = blocks.rows[i];
       if (!row.cuts || !std::isfinite(row.surface_left_m)) continue;
@@ -100,8 +100,8 @@ TEST_F(FinishedSurface, IsWhatLaterPassesLeave) {
       const double found = std::abs(row.surface_left_m);
       EXPECT_GE(found, greatest_error_m(forces, i, modes, surely) * (1.0 - 1e-6)) << i;
       EXPECT_LE(found, greatest_error_m(forces, i, modes, perhaps) * (1.0 + 1e-6)) << i;
-      ASSERT_EQ(left[i].state, SurfaceLeft::State::known) << i;
-      EXPECT_NEAR(row.surface_left_m, left[i].error_m, 0.05 * found) << i;
+      ASSERT_EQ(left[i].before.state, SurfaceLeft::State::known) << i;
+      EXPECT_NEAR(row.surface_left_m, left[i].before.error_m, 0.05 * found) << i;
       if (found < 0.9 * std::abs(row.cut.surface_error_m)) ++taken;
     }
   }

@@ -89,10 +89,6 @@ JudgedCut judged_cut(const BlockCut& at, const modal::ModalModel& modes) {
   return judged;
 }
 
-CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
-  return judged_cut(at, modes).stability;
-}
-
 double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
   const double depth_m = engaged_depth_m(at.cut);
   stability::BlockOptions options;

@@ -33,10 +33,6 @@ struct JudgedCut {
 /// @throws InvalidInput where modes or cut are out of range
 [[nodiscard]] JudgedCut judged_cut(const BlockCut& cut, const modal::ModalModel& modes);
 
-/// Its stability alone.
-/// @throws InvalidInput as above
-[[nodiscard]] CutStability cut_stability(const BlockCut& cut, const modal::ModalModel& modes);
-
 /// The limit depth alone; NaN: none.
 [[nodiscard]] double limit_depth_m(const BlockCut& cut, const modal::ModalModel& modes);
 

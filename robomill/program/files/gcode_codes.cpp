@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace robomill::program {
 namespace {
@@ -121,12 +122,15 @@ constexpr std::array<Mcode, 85> mcode_rows = {{
     {429, McodeAct::tcp_off, "tool centre point off (switchable kinematics)", "", ""},
     {430, McodeAct::rejected, "the user's own kinematics", "", ""},
 }};
+static_assert(std::ranges::adjacent_find(mcode_rows, std::ranges::greater_equal(), &Mcode::code) == mcode_rows.end(),
+              "each code once, in order");
+static_assert(std::ranges::none_of(mcode_rows,
+                                   [](const Mcode& row) {
+                                     return row.linuxcnc.empty() && row.fanuc_haas.empty() && row.heidenhain.empty();
+                                   }),
+              "each code is known on some machine");
 
 }  // namespace
-
-std::span<const Mcode> mcodes() {
-  return mcode_rows;
-}
 
 const Mcode* find_mcode(int code) {
   const auto* const found = std::ranges::lower_bound(mcode_rows, code, {}, &Mcode::code);

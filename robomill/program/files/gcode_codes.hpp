@@ -56,7 +56,4 @@ struct Mcode {
 /// The row of an M code; null for those that are not known here.
 [[nodiscard]] const Mcode* find_mcode(int code);
 
-/// All of them, in order.
-[[nodiscard]] std::span<const Mcode> mcodes();
-
 }  // namespace robomill::program

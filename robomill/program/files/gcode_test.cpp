@@ -1,4 +1,4 @@
-#include "robomill/program/files/gcode.hpp"
+#include "robomill/program/files/program_files.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,7 @@ namespace gcode_test {
 using Eigen::Vector3d;
 
 Program read(const std::string& text, std::optional<Machine> machine = {}) {
-  const test::Folder folder;
-  return read_gcode(folder.file("part.ngc", text), machine);
+  return read_program_text(text, "part.ngc", {.machine = machine});
 }
 
 void expect_rejected(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {

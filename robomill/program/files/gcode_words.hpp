@@ -24,8 +24,6 @@ class GcodeWords {
   void scan(std::string_view line, const std::string& file, std::size_t number);
 
   [[nodiscard]] const std::vector<Word>& words() const { return words_; }
-  /// The line begins with a slash: not carried out where the machine's block delete is on.
-  [[nodiscard]] bool deleted() const { return !compact_.empty() && compact_.front() == '/'; }
   [[nodiscard]] std::string_view compact() const { return compact_; }
   /// Where each letter of `compact` stands in the line that was scanned.
   static void find_letters(std::string_view line, std::vector<std::size_t>& places);

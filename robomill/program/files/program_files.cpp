@@ -9,6 +9,7 @@
 
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
 #include "robomill/program/files/gcode_reader.hpp"
@@ -21,6 +22,11 @@ namespace robomill::program {
 namespace {
 
 constexpr std::size_t kept_remarks = 500;
+
+constexpr Name<Machine> machine_names[] = {{"xyzac-trt", Machine::xyzac_trt},
+                                           {"xyzbc-trt", Machine::xyzbc_trt},
+                                           {"xyzac-head", Machine::xyzac_head},
+                                           {"xyzbc-head", Machine::xyzbc_head}};
 
 std::unique_ptr<ProgramReader> make_reader(ProgramFormat format, const std::string& file, const ProgramReading& reading,
                                            ProgramRemarks& remarks) {
@@ -124,6 +130,12 @@ ProgramFormat program_format_of(const std::filesystem::path& path) {
   const std::string ending = io::lowered(path.extension().string());
   if (ending == ".apt" || ending == ".cls" || ending == ".cl") return ProgramFormat::apt;
   return ending == ".csv" ? ProgramFormat::csv : ProgramFormat::gcode;
+}
+
+Machine parse_machine(std::string_view name) {
+  if (const std::optional<Machine> machine = value_in(machine_names, name)) return *machine;
+  throw InvalidInput(InvalidInput::Parts{
+      .field = "program.machine", .value = fmt::format("\"{}\"", name), .rule = one_of(machine_names)});
 }
 
 Rotary parse_rotary(std::string_view name) {

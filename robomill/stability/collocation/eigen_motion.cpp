@@ -119,7 +119,6 @@ EigenMotion eigen_motion(const CollocationCase& at, double factor, Complex multi
   for (const PieceMap& map : maps) whole = (map.whole * whole).eval();
   const Eigen::MatrixXcd singular = whole - multiplier * Eigen::MatrixXcd::Identity(size, size);
   Eigen::VectorXcd z = null_vector(singular);
-  out.residual = (singular * z).norm() / std::abs(multiplier);
   const Eigen::VectorXcd y_end = null_vector(singular.transpose());
   const Complex overlap = (y_end.transpose() * z).value();
   Eigen::VectorXcd y = y_end;

@@ -31,9 +31,6 @@ struct EigenMotion {
   std::vector<Piece> pieces;
   std::complex<double> by_factor = 0.0;  ///< ∂(yᵀ Ψ z) / ∂(a ν)
   std::complex<double> scale = 0.0;      ///< yᵀ (I - ∂Ψ/∂μ) z: δμ = yᵀ δΨ z / scale
-  double residual = 0.0;                 ///< ‖Ψ z - μ z‖ / (|μ| ‖z‖)
-  /// ∂ ln|μ| / ∂ ln a.
-  [[nodiscard]] double by_log_factor() const { return (factor * nu * by_factor / (scale * multiplier)).real(); }
 };
 
 /// Of a case that looks back a period.

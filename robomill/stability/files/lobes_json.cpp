@@ -129,10 +129,6 @@ io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertai
   return json;
 }
 
-std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
-  return io::dump(lobes_object(result, uncertain, surface));
-}
-
 std::string sweep_json(const SweepResult& result) {
   const bool angle = is_angle(result.parameter);
   const std::string name(name_in(swept_names, result.parameter));

@@ -3,18 +3,11 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/stability/compare.hpp"
-#include "robomill/stability/lobes.hpp"
-#include "robomill/stability/surface_error.hpp"
 #include "robomill/stability/sweep.hpp"
-#include "robomill/stability/uncertainty.hpp"
 
 // Method: robomill/stability/README.md, "Files"
 
 namespace robomill::stability {
-
-/// lobes.json as text; with the map, the uncertain limits and the surface where there are some.
-[[nodiscard]] ROBOMILL_API std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain = {},
-                                                  const SurfaceMap& surface = {});
 
 /// lobes.json of a sweep of another parameter than the axial depth.
 [[nodiscard]] ROBOMILL_API std::string sweep_json(const SweepResult& result);

@@ -1,4 +1,4 @@
-#include "robomill/stability/files/lobes_json.hpp"
+#include "robomill/stability/files/lobes_object.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/json.hpp"
 
 namespace robomill::stability {
 namespace lobes_json_test {
@@ -38,8 +39,12 @@ LobesResult small_result() {
   return r;
 }
 
+nlohmann::json as_written(const LobesResult& result) {
+  return nlohmann::json::parse(io::dump(lobes_object(result)));
+}
+
 TEST(LobesJson, SaysEverythingInShopUnits) {
-  const nlohmann::json json = nlohmann::json::parse(lobes_json(small_result()));
+  const nlohmann::json json = as_written(small_result());
   EXPECT_EQ(json["spindle_speed_rpm"], (std::vector<double>{4000.0, 16000.0}));
   EXPECT_EQ(json["axial_depth_mm"], (std::vector<double>{0.0, 1.5, 3.0}));
   ASSERT_EQ(json["spectral_radius"].size(), 3U);
@@ -73,13 +78,13 @@ TEST(LobesJson, SaysEverythingInShopUnits) {
 TEST(LobesJson, HasLimitAndMarginOfAPointWhereTheyAreKnown) {
   LobesResult result = small_result();
   result.points[0].axial_depth_m = 0.6e-3;
-  EXPECT_FALSE(nlohmann::json::parse(lobes_json(result))["points"][0].contains("margin"));
+  EXPECT_FALSE(as_written(result)["points"][0].contains("margin"));
   result.points[0].limit_depth_m = 0.8e-3;
-  nlohmann::json point = nlohmann::json::parse(lobes_json(result))["points"][0];
+  nlohmann::json point = as_written(result)["points"][0];
   EXPECT_EQ(point["limit_depth_mm"], 0.8);
   EXPECT_EQ(point["margin"], 0.25);
   result.points[0].limit_depth_m = std::numeric_limits<double>::infinity();
-  point = nlohmann::json::parse(lobes_json(result))["points"][0];
+  point = as_written(result)["points"][0];
   EXPECT_TRUE(point["limit_depth_mm"].is_null());
   EXPECT_TRUE(point["margin"].is_null());
 }
@@ -87,7 +92,7 @@ TEST(LobesJson, HasLimitAndMarginOfAPointWhereTheyAreKnown) {
 TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {
   LobesResult result = small_result();
   result.spectral_radius.resize(0, 0);
-  const nlohmann::json json = nlohmann::json::parse(lobes_json(result));
+  const nlohmann::json json = as_written(result);
   EXPECT_FALSE(json.contains("spectral_radius"));
   EXPECT_TRUE(json.contains("limit"));
 }

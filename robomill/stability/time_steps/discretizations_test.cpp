@@ -12,7 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/stability/time_steps/physical_steps.hpp"
+#include "testing/stability/physical_steps.hpp"
 #include "testing/stability/problems.hpp"
 
 namespace robomill::stability::detail {

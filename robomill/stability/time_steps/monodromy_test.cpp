@@ -14,7 +14,7 @@
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/stability/time_steps/evaluator.hpp"
-#include "robomill/stability/time_steps/physical_steps.hpp"
+#include "testing/stability/physical_steps.hpp"
 #include "testing/stability/problems.hpp"
 #include "testing/support.hpp"
 
