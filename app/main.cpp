@@ -279,8 +279,7 @@ void CommandLine::add_robot_verbs() {
       ->check(one_of_words(path::method_names));
   add_posture(sub, smooth.posture_deg);
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
-  sub->add_flag("--keep-violations,--keep-breaches", smooth.keep_violations,
-                "write the trajectory even where it violates a limit");
+  sub->add_flag("--keep-violations", smooth.keep_violations, "write the trajectory even where it violates a limit");
   sub->add_option("--program-period-ms", smooth.program_period_ms,
                   "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)")
       ->check(number());

@@ -314,12 +314,10 @@ Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double
   return (mean(to) - mean(from)) * (axial_depth_m / (to - from));
 }
 
-CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_tooth_m,
-                  double spindle_speed_rad_per_s) {
+double mean_torque_n_m(const Milling& milling, double axial_depth_m, double feed_per_tooth_m) {
   milling.validate();
   require_non_negative("axial_depth_m", axial_depth_m, "m");
   require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   const Immersion& immersion = milling.immersion;
   const ForceCoefficients& k = milling.coefficients;
   const double area = radial_depth(immersion, milling.tool.diameter_m) * feed_per_tooth_m;
@@ -328,14 +326,7 @@ CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_
                                    (immersion.exit_rad - immersion.entry_rad) * axial_depth_m / units::revolution;
   const double rubs =
       k.tangential_edge_n_per_m > 0.0 ? 1.0 - missed_share(milling, axial_depth_m, feed_per_tooth_m) : 0.0;
-  const double thickest_m = feed_per_tooth_m * std::sin(std::clamp(0.5 * pi, immersion.entry_rad, immersion.exit_rad));
-  CutLoad load;
-  load.torque_n_m = k.tangential_n_per_m2 * volume_per_rad + k.tangential_edge_n_per_m * rubs * edge_area_per_rad;
-  load.power_w = load.torque_n_m * spindle_speed_rad_per_s;
-  load.removal_rate_m3_per_s = volume_per_rad * spindle_speed_rad_per_s;
-  load.peak_tooth_force_n = axial_depth_m * std::hypot(k.tangential_n_per_m2 * thickest_m + k.tangential_edge_n_per_m,
-                                                       k.radial_n_per_m2 * thickest_m + k.radial_edge_n_per_m);
-  return load;
+  return k.tangential_n_per_m2 * volume_per_rad + k.tangential_edge_n_per_m * rubs * edge_area_per_rad;
 }
 
 }  // namespace robomill::cutting

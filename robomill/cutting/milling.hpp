@@ -132,23 +132,13 @@ struct ROBOMILL_API Milling {
 [[nodiscard]] ROBOMILL_API Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad,
                                                                   double to_rad, double axial_depth_m);
 
-/// What a steady cut asks of the spindle, on average over a revolution: that of cutting_force (force.hpp), in closed
-/// form. Runout moves chip from tooth to tooth and not out of the sum, so only the edges that miss the cut are left
-/// out.
-struct CutLoad {
-  /// N D a (Kt f (cos entry - cos exit) + Kte (exit - entry) (1 - missed share)) / 4π
-  double torque_n_m = 0.0;
-  double power_w = 0.0;                ///< torque times spindle speed
-  double removal_rate_m3_per_s = 0.0;  ///< a b f N Ω / 2π
-  /// Greatest force on one tooth without helix and runout, a |(Kt f sin φ + Kte, Kr f sin φ + Kre)|.
-  double peak_tooth_force_n = 0.0;
-};
-
-/// @param axial_depth_m            a [m], >= 0
-/// @param feed_per_tooth_m         f [m], >= 0
-/// @param spindle_speed_rad_per_s  Ω [rad/s], >= 0
+/// What a steady cut asks of the spindle, on average over a revolution [N m]: that of cutting_force (force.hpp), in
+/// closed form, N D a (Kt f (cos entry - cos exit) + Kte (exit - entry) (1 - missed share)) / 4π. Runout moves chip
+/// from tooth to tooth and not out of the sum, so only the edges that miss the cut are left out.
+/// @param axial_depth_m     a [m], >= 0
+/// @param feed_per_tooth_m  f [m], >= 0
 /// @throws InvalidInput if a value is out of range
-[[nodiscard]] ROBOMILL_API CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_tooth_m,
-                                             double spindle_speed_rad_per_s);
+[[nodiscard]] ROBOMILL_API double mean_torque_n_m(const Milling& milling, double axial_depth_m,
+                                                  double feed_per_tooth_m);
 
 }  // namespace robomill::cutting

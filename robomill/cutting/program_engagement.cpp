@@ -361,7 +361,6 @@ class Walker {
     const auto parts = static_cast<double>(parts_);
     const double dexel = workpiece_.dexel_m();
     part.block = block_;
-    part.share_from = static_cast<double>(part_ - 1) / parts;
     part.share_to = static_cast<double>(part_) / parts;
     part.duration_s = block.duration_s / parts;
     part.pose = part_ == parts_ ? block.end : program::between(program_.begin_of(block_), block.end, part.share_to);
@@ -370,7 +369,6 @@ class Walker {
     if (feed) part.cut = finder_.at(workpiece_, part.pose, motion_, std::max(0.0, 0.5 * dexel - way_m_ / parts));
     const Removal removal = workpiece_.remove(profile_, at_, part.pose);
     part.removed_volume_m3 = removal.volume_m3();
-    part.shank_volume_m3 = removal.shank_volume_m3();
     part.shank_depth_m = removal.shank_depth_m;
     part.shank = removal.shank_depth_m > dexel;
     part.rapid_in_material = !feed && part.removed_volume_m3 > dexel * dexel * dexel;

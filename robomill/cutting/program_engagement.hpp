@@ -87,16 +87,15 @@ class ROBOMILL_API EngagementFinder {
 
 /// A part of a block: the cutter at its end, and what it took away.
 struct BlockEngagement {
-  std::size_t block = 0;                    ///< of the program
-  double share_from = 0.0, share_to = 0.0;  ///< of the block
-  double duration_s = 0.0;                  ///< of the part
-  program::Pose pose;                       ///< at its end
-  PoseEngagement cut;                       ///< there; empty for rapid moves
-  double removed_volume_m3 = 0.0;           ///< by edges and shank
-  double shank_volume_m3 = 0.0;             ///< the shank's part of it
-  double shank_depth_m = 0.0;               ///< how deep the shank ran into material
-  bool shank = false;                       ///< shank_depth_m > Workpiece::dexel_m()
-  bool rapid_in_material = false;           ///< a rapid move with removed_volume_m3 > dexel_m()³
+  std::size_t block = 0;           ///< of the program
+  double share_to = 0.0;           ///< of the block, where the part ends
+  double duration_s = 0.0;         ///< of the part
+  program::Pose pose;              ///< at its end
+  PoseEngagement cut;              ///< there; empty for rapid moves
+  double removed_volume_m3 = 0.0;  ///< by edges and shank
+  double shank_depth_m = 0.0;      ///< how deep the shank ran into material
+  bool shank = false;              ///< shank_depth_m > Workpiece::dexel_m()
+  bool rapid_in_material = false;  ///< a rapid move with removed_volume_m3 > dexel_m()³
 };
 
 using Deliver = std::function<void(std::span<const BlockEngagement>)>;

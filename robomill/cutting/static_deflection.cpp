@@ -81,7 +81,6 @@ class DeflectionSearch {
     return true;
   }
   Trial look(double depth_m) {
-    ++out_.iterations;
     out_.cut.axial_depth_m = depth_m;
     out_.engagement = engage(cutter_, out_.cut, {.slices = slices_});
     out_.force = cutting_force(cutter_, out_.engagement, coefficients_, motion_, options_);

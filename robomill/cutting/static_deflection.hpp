@@ -16,7 +16,6 @@ struct StaticDeflection {
   CuttingForce force;
   Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< q = C F̄, in F [m]
   double peak_deflection_m = 0.0;                          ///< greatest |C F| over the revolution
-  int iterations = 0;
   enum class Status {
     found,     ///< the depth agrees with its own force: |h' - h + q_z(h')| <= 1e-9 h, or h' lies in a range <= 1e-9 h;
                ///< the search ends after 60 rounds in any case

@@ -161,21 +161,11 @@ void cut_row(Rays& rays, std::ptrdiff_t row, const SweptSolid& solid, bool shank
 
 }  // namespace
 
-namespace {
-
-double mean_by_silhouette(const Vector3d& volumes, const Vector3d& silhouette) {
-  const double weight = silhouette.squaredNorm();
-  return weight > 0.0 ? silhouette.cwiseAbs2().dot(volumes) / weight : 0.0;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double Removal::volume_m3() const {
-  return mean_by_silhouette(edges_m3 + shank_m3, silhouette_m2);
-}
-
-double Removal::shank_volume_m3() const {
-  return mean_by_silhouette(shank_m3, silhouette_m2);
+  const double weight = silhouette_m2.squaredNorm();
+  return weight > 0.0 ? silhouette_m2.cwiseAbs2().dot(edges_m3 + shank_m3) / weight : 0.0;
 }
 
 struct Workpiece::Grid {

@@ -45,7 +45,6 @@ struct ROBOMILL_API Removal {
   /// Edges and shank together, mean of the directions weighed by the squares of their silhouettes: rays that meet the
   /// chip's faces at small angles are few and see its volume worst.
   [[nodiscard]] double volume_m3() const;
-  [[nodiscard]] double shank_volume_m3() const;  ///< the shank's part of it
 };
 
 /// Material as intervals on rays along x, y and z, spaced by at most a dexel.

@@ -36,9 +36,7 @@ void add_surface(Operation& op, const stability::LobesProblem& problem, const st
 }  // namespace
 
 std::function<double(double)> mean_torque_of(const cutting::Milling& milling) {
-  return [milling](double depth_m) {
-    return cutting::mean_load(milling, depth_m, milling.feed_per_tooth_m, 1.0).torque_n_m;
-  };
+  return [milling](double depth_m) { return cutting::mean_torque_n_m(milling, depth_m, milling.feed_per_tooth_m); };
 }
 
 Recommendation choose(const stability::LobesProblem& problem, const stability::LobesOptions& lobes,

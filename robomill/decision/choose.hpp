@@ -12,7 +12,8 @@
 
 namespace robomill::decision {
 
-/// Mean torque of a cut at a depth [m], as RecommendOptions::mean_torque_n_m takes it: that of cutting::mean_load.
+/// Mean torque of a cut at a depth [m], as RecommendOptions::mean_torque_n_m takes it: that of
+/// cutting::mean_torque_n_m.
 [[nodiscard]] ROBOMILL_API std::function<double(double)> mean_torque_of(const cutting::Milling& milling);
 
 /// The best operation of a cut whose limits were found at its speeds, with the surface that forced vibration leaves at

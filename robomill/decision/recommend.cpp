@@ -217,11 +217,12 @@ Recommendation recommend(const std::vector<DepthLimit>& limits, const RecommendO
     return result;
   }
   std::vector<Operation> chosen;
+  constexpr double fraction_apart = 0.05;
   const std::size_t wanted = 1 + static_cast<std::size_t>(options.alternatives);
   for (const Candidate& candidate : ranked(all)) {
     if (chosen.size() == wanted) break;
     const Operation& op = candidate.operation;
-    if (op.axial_depth_m <= 0.0 || !distinct(op, chosen, options.distinct_speed)) continue;
+    if (op.axial_depth_m <= 0.0 || !distinct(op, chosen, fraction_apart)) continue;
     const Operation checked = verified(candidate, options, limit_at);
     if (checked.axial_depth_m > 0.0) chosen.push_back(checked);
   }

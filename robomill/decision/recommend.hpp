@@ -73,8 +73,7 @@ struct RecommendOptions {
       {};  ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
   double depth_margin = default_depth_margin;  ///< in [0, 1); depth <= (1 - depth_margin) · limit …
   double speed_window = default_speed_window;  ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
-  int alternatives = 3;                        ///< >= 0
-  double distinct_speed = 0.05;  ///< of alternatives: |n - n'| >= distinct_speed · n' for every n' already chosen
+  int alternatives = 3;                        ///< >= 0; their speeds lie 5 % apart at least
 
   ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };

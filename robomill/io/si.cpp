@@ -9,6 +9,7 @@
 #include <iterator>
 #include <utility>
 
+#include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::io {
@@ -20,21 +21,17 @@ struct Unit {
   double factor;
 };
 
-constexpr double standard_gravity_m_per_s2 = 9.80665;
-constexpr double inch_m = 0.0254;
-constexpr double pound_force_n = 4.4482216152605;
-
 constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
                                          {"mm", Quantity::displacement, 1e-3},
                                          {"um", Quantity::displacement, 1e-6},
-                                         {"in", Quantity::displacement, inch_m},
+                                         {"in", Quantity::displacement, units::inch},
                                          {"rad", Quantity::displacement, 1.0},
                                          {"mrad", Quantity::displacement, 1e-3},
                                          {"urad", Quantity::displacement, 1e-6},
                                          {"m/s", Quantity::velocity, 1.0},
                                          {"mm/s", Quantity::velocity, 1e-3},
                                          {"um/s", Quantity::velocity, 1e-6},
-                                         {"in/s", Quantity::velocity, inch_m},
+                                         {"in/s", Quantity::velocity, units::inch},
                                          {"rad/s", Quantity::velocity, 1.0},
                                          {"m/s2", Quantity::acceleration, 1.0},
                                          {"m/s/s", Quantity::acceleration, 1.0},
@@ -44,22 +41,22 @@ constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
                                          {"mm/s/s", Quantity::acceleration, 1e-3},
                                          {"mm/ss", Quantity::acceleration, 1e-3},
                                          {"um/s2", Quantity::acceleration, 1e-6},
-                                         {"in/s2", Quantity::acceleration, inch_m},
-                                         {"g", Quantity::acceleration, standard_gravity_m_per_s2},
-                                         {"gn", Quantity::acceleration, standard_gravity_m_per_s2},
+                                         {"in/s2", Quantity::acceleration, units::inch},
+                                         {"g", Quantity::acceleration, units::standard_gravity},
+                                         {"gn", Quantity::acceleration, units::standard_gravity},
                                          {"rad/s2", Quantity::acceleration, 1.0},
                                          {"rad/s/s", Quantity::acceleration, 1.0},
                                          {"n", Quantity::force, 1.0},
                                          {"newton", Quantity::force, 1.0},
                                          {"kn", Quantity::force, 1e3},
-                                         {"lbf", Quantity::force, pound_force_n},
-                                         {"lb", Quantity::force, pound_force_n},
+                                         {"lbf", Quantity::force, units::pound_force},
+                                         {"lb", Quantity::force, units::pound_force},
                                          {"nm", Quantity::force, 1.0},
                                          {"n-m", Quantity::force, 1.0},
                                          {"nmm", Quantity::force, 1e-3},
                                          {"meter", Quantity::displacement, 1.0},
                                          {"metre", Quantity::displacement, 1.0},
-                                         {"g's", Quantity::acceleration, standard_gravity_m_per_s2}}};
+                                         {"g's", Quantity::acceleration, units::standard_gravity}}};
 
 /// Lower case, without blanks, brackets and signs of multiplication or power; ² is 2 and µ is u, in UTF-8 and Latin-1.
 std::string plain(std::string_view text) {

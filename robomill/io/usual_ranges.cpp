@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::io {
@@ -296,7 +297,7 @@ constexpr std::array slips = std::to_array<Slip>({
     {"N m/rad", deg_per_rad, "N m/deg"},
     {"N m/rad", 1e-3, "N mm/rad"},
     {"N", 1000, "kN"},
-    {"N", 9.80665, "kgf"},
+    {"N", units::standard_gravity, "kgf"},
     {"N", 1e-3, "mN"},
     {"N m", 1e-3, "N mm"},
     {"N m", 1000, "kN m"},

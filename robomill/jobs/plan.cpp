@@ -43,9 +43,9 @@ constexpr double far_apart = 0.2;
 
 void warn_of_distance(const TipPrediction& prediction, std::vector<std::string>& warnings) {
   for (const modal::FrfFitError& error : prediction.error) {
-    if (!(error.error.relative > far_apart)) continue;
+    if (!(error.relative > far_apart)) continue;
     std::string text = fmt::format("The predicted {} differs from the measured one by {:.0f} %",
-                                   modal::to_string(error.name), 100.0 * error.error.relative);
+                                   modal::to_string(error.name), 100.0 * error.relative);
     // Of a round tool the peaks stand in x alone, for both.
     const auto peak = std::ranges::find_if(prediction.peaks,
                                            [&](const TipPeak& p) { return prediction.round || p.name == error.name; });

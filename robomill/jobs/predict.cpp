@@ -95,17 +95,7 @@ void compare(TipPrediction& prediction, const std::filesystem::path& path) {
     if (model == nullptr) continue;
     const Eigen::VectorXcd apart = model->receptance - frf.receptance;
     const double size = frf.receptance.norm();
-    modal::FrfFitError error{.name = frf.name, .error = {}};
-    error.error.relative = size > 0.0 ? apart.norm() / size : 0.0;
-    double sum = 0.0;
-    Eigen::Index lines = 0;
-    for (Eigen::Index i = 0; i < apart.size(); ++i) {
-      if (std::abs(frf.receptance(i)) == 0.0) continue;
-      sum += std::abs(apart(i)) / std::abs(frf.receptance(i));
-      ++lines;
-    }
-    error.error.mean_relative = lines > 0 ? sum / static_cast<double>(lines) : 0.0;
-    prediction.error.push_back(error);
+    prediction.error.push_back({.name = frf.name, .relative = size > 0.0 ? apart.norm() / size : 0.0});
     measured.frfs.push_back(frf);
   }
   if (measured.frfs.empty()) {

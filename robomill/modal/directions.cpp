@@ -129,7 +129,7 @@ FitResult with_equal_directions(FitResult fit) {
   fit.model = with_equal_directions(fit.model);
   const FrfFitError error = fit.by_frf.front();
   fit.by_frf.clear();
-  for (const Axis axis : plane) fit.by_frf.push_back({.name = direct(measured, axis), .error = error.error});
+  for (const Axis axis : plane) fit.by_frf.push_back({.name = direct(measured, axis), .relative = error.relative});
   for (const ModeAtBound& at : std::exchange(fit.at_bounds, {})) {
     for (const int mode : {2 * at.mode - 1, 2 * at.mode}) fit.at_bounds.push_back({mode, at.bound});
   }

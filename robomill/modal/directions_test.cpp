@@ -42,7 +42,7 @@ TEST(EqualDirections, DoublesAFitWithWhatItSays) {
   FitResult fit;
   fit.model = one_direction(Axis::y);
   fit.model.modes.push_back(fit.model.modes[0]);
-  fit.by_frf = {{.name = parse_frf_name("yy"), .error = {.relative = 0.1}}};
+  fit.by_frf = {{.name = parse_frf_name("yy"), .relative = 0.1}};
   fit.at_bounds = {{2, FitBound::damping}};
   const FitResult both = with_equal_directions(fit);
   EXPECT_EQ(both.model.modes.size(), 4U);

@@ -89,14 +89,10 @@ struct ModeAtBound {
   FitBound bound = FitBound::damping;
 };
 
-/// How far fit and data are apart on one FRF, or on all.
-struct FitError {
-  double relative = 0.0;       ///< ‖H_fit - H‖ / ‖H‖ over the band
-  double mean_relative = 0.0;  ///< mean over the lines of |H_fit - H| / |H|; lines with H = 0 left out
-};
+/// How far fit and data are apart on one FRF.
 struct FrfFitError {
   FrfName name;
-  FitError error;
+  double relative = 0.0;  ///< ‖H_fit - H‖ / ‖H‖ over the band
 };
 
 /// The modes and how well they describe the FRFs.

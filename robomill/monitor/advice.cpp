@@ -141,9 +141,8 @@ void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const stabi
     return std::abs(a.spindle_speed_rad_per_s - present_rad_per_s) <
            std::abs(b.spindle_speed_rad_per_s - present_rad_per_s);
   });
-  if (advice.speeds.size() > static_cast<std::size_t>(options.most_speeds)) {
-    advice.speeds.resize(static_cast<std::size_t>(options.most_speeds));
-  }
+  constexpr std::size_t most_speeds = 6;
+  if (advice.speeds.size() > most_speeds) advice.speeds.resize(most_speeds);
 }
 
 void choose(Advice& advice, const stability::LobesResult& lobes, const AdviceOptions& options) {
@@ -176,7 +175,6 @@ void AdviceOptions::validate() const {
   if (!(depth_margin >= 0.0 && depth_margin < 1.0)) {
     throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
   }
-  if (most_speeds < 1) throw InvalidInput("most_speeds", most_speeds, "", "must be at least 1");
   require_non_negative("unfiltered_sample_rate_hz", unfiltered_sample_rate_hz, "Hz");
 }
 

@@ -26,7 +26,6 @@ struct AdviceOptions {
   /// Of each limit of the lobes the depth up to which forced vibration stays within the feed per tooth
   /// (decision::vibration_depths); empty: not known. It needs no margin.
   std::span<const double> vibration_depth_m = {};
-  int most_speeds = 6;  ///< nearest to the present one; >= 1
   /// Of samples that no anti-alias filter is stated for, f_s > 0: then the line may be one of f_s - f and f_s + f that
   /// is folded to f. 0: a filter is stated.
   double unfiltered_sample_rate_hz = 0.0;

@@ -11,7 +11,6 @@ namespace robomill::monitor {
 struct Hop {
   std::span<const double> samples;
   std::size_t frames = 0;
-  std::uint64_t first_frame = 0;   ///< of the stream
   std::uint64_t bad_channels = 0;  ///< bit c: dead, stuck or not finite, or no vibration; to be left out
   bool still = false;              ///< the spindle stands still: what begins now is no chatter
   [[nodiscard]] std::span<const double> channel(std::size_t c) const noexcept {

@@ -145,7 +145,7 @@ struct ChatterMonitor::Parts {
     const State before = last.state;
     const std::uint64_t hop = last.hop + 1;
     last = {.hop = hop, .time_s = static_cast<double>(hop * hop_frames - 1) / options.sample_rate_hz};
-    Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames, .still = still};
+    Hop of{.samples = samples, .frames = hop_frames, .still = still};
     validate(of);
     detector->decide(of, last);
     take_blindness();

@@ -101,24 +101,14 @@ void DriveModel::add(const Sample& sample) {
     }
     const double error = command - joint.state[2];
     errors[j] = error;
-    joint.squares += error * error;
-    TrackingError::Joint& reported = error_.joints[j];
-    if (std::abs(error) > reported.max) {
-      reported.max = std::abs(error);
-      reported.at_s = sample.time_s;
-      reported.block = sample.block;
-    }
+    error_.joints[j].max = std::max(error_.joints[j].max, std::abs(error));
   }
   ++error_.samples;
   if (series_) series_(sample.time_s, std::span<const double>(errors.data(), joints_.size()));
 }
 
 TrackingError DriveModel::result() const {
-  TrackingError out = error_;
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    if (out.samples > 0) out.joints[j].rms = std::sqrt(joints_[j].squares / static_cast<double>(out.samples));
-  }
-  return out;
+  return error_;
 }
 
 }  // namespace robomill::path

@@ -32,9 +32,6 @@ struct ROBOMILL_API Drive {
 struct TrackingError {
   struct Joint {
     double max = 0.0;  ///< largest |r − z| (|r − y| of a rigid joint) at the samples [rad or m]
-    double rms = 0.0;
-    double at_s = 0.0;      ///< when the largest was met
-    std::size_t block = 0;  ///< … and in which block
   };
   std::vector<Joint> joints = {};
   std::size_t samples = 0;
@@ -60,7 +57,6 @@ class ROBOMILL_API DriveModel {
   struct Joint {
     Eigen::Matrix<double, 6, 6> step;  // of the state over a period
     State state = State::Zero();
-    double squares = 0.0;
   };
   void add(const Sample& sample);
   double sample_period_s_;

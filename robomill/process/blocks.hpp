@@ -66,7 +66,7 @@ struct CutStability {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double spectral_radius = none;
   double limit_depth_m = none;  ///< lowest unstable depth; NaN: none up to searched_depth_m
-  double limit_5_percent_m = none, limit_50_percent_m = none, limit_95_percent_m = none;  ///< NaN: as above
+  double limit_5_percent_m = none, limit_95_percent_m = none;  ///< NaN: as above
   double searched_depth_m = none;
   bool below_range = false;   ///< unstable already at the least depth that was looked at, which stands as the limit
   double gain_margin = none;  ///< infinity: none up to 1,000

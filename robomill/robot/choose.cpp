@@ -41,10 +41,7 @@ Followed follow_from(const Arm& arm, const SphericalWristInverse& inverse,
     out.last = choose(arm, inverse.solve(flange, previous), previous, options);
     out.status = out.last.status;
     if (out.status != Reach::Status::found) break;
-    if (out.last.travel_rad > out.largest_travel_rad) {
-      out.largest_travel_rad = out.last.travel_rad;
-      out.largest_travel_at = out.reached;
-    }
+    out.largest_travel_rad = std::max(out.largest_travel_rad, out.last.travel_rad);
     previous = out.last.position_rad;
     out.position_rad.push_back(previous);
     ++out.reached;
@@ -98,13 +95,10 @@ void NearOptions::validate() const {
 
 Choice choose(const Arm& arm, const InverseSolutions& solutions, const Position6& previous,
               const ChooseOptions& options) noexcept {
-  Choice out{.shoulder_m = solutions.shoulder_m,
-             .out_of_reach_m = solutions.out_of_reach_m,
-             .out_of_reach_rad = solutions.out_of_reach_rad};
+  Choice out{.out_of_reach_m = solutions.out_of_reach_m, .out_of_reach_rad = solutions.out_of_reach_rad};
   if (solutions.count == 0) return out;
   const Picked best = pick(arm, solutions, previous, options.weight);
   out.position_rad = best.placed.position_rad;
-  out.solution = solutions.solution[static_cast<std::size_t>(best.solution)];
   out.travel_rad = (out.position_rad - previous).cwiseAbs().maxCoeff();
   out.joint = best.placed.joint;
   out.beyond_rad = best.placed.beyond_rad;
@@ -164,7 +158,6 @@ NearResult solve_near(const Arm& arm, const Eigen::Isometry3d& flange, const Eig
   const NewtonEnd end = newton(arm, flange, out.position, options);
   out.error_m = end.error_m;
   out.error_rad = end.error_rad;
-  out.iterations = end.iterations;
   if (out.error_m <= options.tolerance_m && out.error_rad <= options.tolerance_rad) {
     out.status = NearResult::Status::converged;
   }

@@ -28,11 +28,9 @@ struct ROBOMILL_API ChooseOptions {
 /// One position for a pose.
 struct Choice {
   Reach::Status status = Reach::Status::out_of_reach;
-  Position6 position_rad = Position6::Zero();  ///< zero where out of reach
-  double travel_rad = 0.0;                     ///< the largest of a joint from the previous position
-  double condition_number = 0.0;               ///< within limits: of the Jacobian at the point
-  InverseSolution solution = {};               ///< which way it is, and its distances to elbow and wrist singularity
-  double shoulder_m = 0.0;                     ///< InverseSolutions::shoulder_m
+  Position6 position_rad = Position6::Zero();           ///< zero where out of reach
+  double travel_rad = 0.0;                              ///< the largest of a joint from the previous position
+  double condition_number = 0.0;                        ///< within limits: of the Jacobian at the point
   double out_of_reach_m = 0.0, out_of_reach_rad = 0.0;  ///< InverseSolutions'
   Eigen::Index joint = -1;  ///< outside limits: the one that is farthest beyond its limit, from 0
   double beyond_rad = 0.0;  ///< … and by how much, in the solution where that is least
@@ -51,7 +49,6 @@ struct Followed {
   std::vector<Position6> position_rad = {};     ///< one each pose reached
   Choice last = {};                             ///< of the pose where it ended
   double largest_travel_rad = 0.0;              ///< the largest step of a joint
-  std::size_t largest_travel_at = 0;            ///< into which pose
 };
 
 /// Goes through the poses by choose(), from one to the next. Without a start it tries every way to stand at the first
@@ -79,7 +76,6 @@ struct NearResult {
   Status status = Status::not_converged;
   Eigen::VectorXd position = {};          ///< the best one found, also where not converged
   double error_m = 0.0, error_rad = 0.0;  ///< residual of the flange's position and orientation
-  int iterations = 0;
 };
 /// The position at which an arm of any kind reaches a pose, by damped Newton steps (Levenberg-Marquardt) from a seed
 /// near it. Limits are not looked at.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/stiffness.hpp"
 
@@ -16,7 +17,7 @@ namespace robomill::robot {
 /// Torques (forces where the joint is prismatic) are in N m (N), positive along the joint's axis.
 struct ROBOMILL_API JointLoadOptions {
   /// In B. A base that stands tilted has it elsewhere than along −z.
-  Eigen::Vector3d gravity_m_per_s2 = {0.0, 0.0, -9.80665};
+  Eigen::Vector3d gravity_m_per_s2 = {0.0, 0.0, -units::standard_gravity};
   Eigen::VectorXd velocity = {};      ///< length n [rad/s or m/s]; empty: at rest
   Eigen::VectorXd acceleration = {};  ///< length n [rad/s² or m/s²]; empty: zero
   /// @throws InvalidInput naming the member

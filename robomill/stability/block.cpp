@@ -47,7 +47,6 @@ class BlockSearch {
     if (options_.margin) out.at.gain_margin = gain_of(out.gain);
     look_at_depths(out);
     out.evaluations = evaluator_.evaluations();
-    out.unsettled = evaluator_.unsettled();
     return out;
   }
 
@@ -71,11 +70,6 @@ class BlockSearch {
     out.gain.status = crossing.status == Crossing::Status::none    ? GainMargin::Status::unconditionally_stable
                       : crossing.status == Crossing::Status::found ? GainMargin::Status::found
                                                                    : GainMargin::Status::below_range;
-    if (crossing.status != Crossing::Status::none) {
-      out.gain.chatter_frequency_hz = crossing.outcome.chatter_frequency_hz;
-      out.gain.kind = crossing.outcome.kind;
-      out.gain.mode = crossing.outcome.mode;
-    }
   }
 
   void look_at_depths(BlockStability& out) {
@@ -99,7 +93,7 @@ class BlockSearch {
     const double guess = guessed ? out.gain.gain * point_.axial_depth_m : 0.0;
     const Crossing crossing = lowest_crossing(look, marks(point_.axial_depth_m, range[0], range[1], guess), crossing_);
     out.limit.spindle_speed_rad_per_s = point_.spindle_speed_rad_per_s;
-    out.limit_5_percent_m = out.limit_50_percent_m = out.limit_95_percent_m = none;
+    out.limit_5_percent_m = out.limit_95_percent_m = none;
     if (crossing.status == Crossing::Status::none) return;
     out.limit.status = Limit::Status::found;
     out.limit.axial_depth_m = crossing.at;
@@ -107,7 +101,7 @@ class BlockSearch {
     out.limit.kind = crossing.outcome.kind;
     out.limit.mode = crossing.outcome.mode;
     out.limit.error_estimate = crossing.outcome.error_estimate;
-    out.limit_5_percent_m = out.limit_50_percent_m = out.limit_95_percent_m = crossing.at;
+    out.limit_5_percent_m = out.limit_95_percent_m = crossing.at;
     explain(crossing, out);
   }
 
@@ -139,7 +133,6 @@ class BlockSearch {
                             : mode_differences(problem_, there, crossing_.level, options_.tolerance);
     const LimitQuantiles quantiles = limit_quantiles(problem_, sensitivity, crossing.at);
     out.limit_5_percent_m = quantiles.limit_5_percent_m;
-    out.limit_50_percent_m = quantiles.limit_50_percent_m;
     out.limit_95_percent_m = quantiles.limit_95_percent_m;
   }
 

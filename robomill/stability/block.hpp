@@ -33,9 +33,8 @@ struct BlockStability {
   bool lower_bound = false;        ///< as of RegimeResult: process damping would raise the limit
   /// Depths below which 5, 50 and 95 % of the limits lie, to the first order (limit_quantiles); infinity where there is
   /// no limit in the range, the limit itself where nothing is asked or known of deviations.
-  double limit_5_percent_m = 0.0, limit_50_percent_m = 0.0, limit_95_percent_m = 0.0;
+  double limit_5_percent_m = 0.0, limit_95_percent_m = 0.0;
   long long evaluations = 0;  ///< spectral radii found
-  long long unsettled = 0;    ///< as of LobesResult
 };
 
 /// Radius, lowest limit depth, gain margin, regime and quantiles of one cut. Depths and gains are looked at in steps of

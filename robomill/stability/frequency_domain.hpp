@@ -39,8 +39,6 @@ struct FrequencyLimit {
   double chatter_frequency_hz = 0.0;
   BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};        ///< that moves most in it; unknown for measured FRFs
-  int harmonics = 0;              ///< N: of Fourier's series, |n| <= N
-  int polynomials = 0;            ///< with which the force is followed through the cut
   double error_estimate_m = 0.0;  ///< by how much the last refinement moved the limit
   /// Share by which the limit moves where receptances outside the band of measured FRFs are left out.
   double uncovered_ratio = 0.0;

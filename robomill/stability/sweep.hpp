@@ -54,9 +54,6 @@ struct GainMargin {
   enum class Status { found, unconditionally_stable, below_range };
   Status status = Status::unconditionally_stable;
   double gain = 0.0;  ///< > 1: stable as it is; 0.001 where below_range
-  double chatter_frequency_hz = 0.0;
-  BifurcationType kind = BifurcationType::hopf;
-  modal::ModeId mode = {};
 };
 
 /// At one point, by collocation; the engagement stays what it is. Every fourth of factors a tenth apart is looked at,

@@ -114,7 +114,7 @@ std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segm
       throw row.reject("tool", "comes a second time",
                        "The rows of one tool follow each other, from the tip to the joint");
     }
-    if (next) out.push_back({.name = name, .segments = {}, .line = fields.line});
+    if (next) out.push_back({.name = name, .segments = {}});
     ListedTool& tool = out.back();
     tool.segments.push_back(read_segment(row, like));
     int teeth = 0;

@@ -16,7 +16,6 @@ struct ListedTool {
   std::string name;
   std::vector<Segment> segments;  ///< from the tip to the joint
   int teeth = 0;                  ///< of the column teeth, else the flutes of the first segment; 0: not said
-  std::size_t line = 0;           ///< of its first row, from 1
 };
 
 /// Reads tools.csv: a row a segment; rows of one name that follow each other are one tool from the tip to the joint.

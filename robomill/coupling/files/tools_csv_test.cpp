@@ -42,7 +42,6 @@ TEST(ToolsCsv, ReadsARowASegment) {
                                 carbide());
   ASSERT_EQ(tools.size(), 2U);
   EXPECT_EQ(tools[0].name, "mill, 10");
-  EXPECT_EQ(tools[0].line, 3U);
   EXPECT_EQ(tools[0].teeth, 3);
   ASSERT_EQ(tools[0].segments.size(), 2U);
   const Segment& tip = tools[0].segments[0];

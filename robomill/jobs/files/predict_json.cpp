@@ -86,7 +86,7 @@ Json prediction_object(const TipPrediction& prediction) {
                      {"measured_frequency_hz", number(peak.measured_frequency_hz)}});
   }
   Json error = Json::object();
-  for (const modal::FrfFitError& one : prediction.error) error[modal::to_string(one.name)] = number(one.error.relative);
+  for (const modal::FrfFitError& one : prediction.error) error[modal::to_string(one.name)] = number(one.relative);
   Json json;
   json["file"] = prediction.file.path.filename().string();
   json["tool"] = segments_json(assembly.tool);

@@ -247,7 +247,7 @@ io::Json modes_object(const FitResult& fit) {
     json["modes"][k]["at_bounds"] = std::move(bounds);
   }
   io::Json by_frf = io::Json::object();
-  for (const FrfFitError& error : fit.by_frf) by_frf[to_string(error.name)] = io::number(error.error.relative);
+  for (const FrfFitError& error : fit.by_frf) by_frf[to_string(error.name)] = io::number(error.relative);
   io::Json dropped = io::Json::array();
   for (const double frequency_hz : fit.dropped_hz) dropped.push_back(io::number(frequency_hz));
   json["fit"] = {{"relative_error", io::number(fit.relative_error)},

@@ -143,7 +143,7 @@ void set_errors(FitResult& result, const FrfSet& set) {
   for (const Frf& frf : set.frfs) {
     const Frf* fitted = model.find(frf.name);
     const Eigen::VectorXcd difference = fitted == nullptr ? frf.receptance : fitted->receptance - frf.receptance;
-    FrfFitError one{.name = frf.name, .error = {}};
+    FrfFitError one{.name = frf.name};
     double ratio = 0.0;
     double counted = 0.0;
     for (Index i = 0; i < difference.size(); ++i) {
@@ -151,10 +151,7 @@ void set_errors(FitResult& result, const FrfSet& set) {
       ratio += std::abs(difference(i)) / std::abs(frf.receptance(i));
       counted += 1.0;
     }
-    if (counted > 0.0) {
-      one.error.relative = difference.norm() / frf.receptance.norm();
-      one.error.mean_relative = ratio / counted;
-    }
+    if (counted > 0.0) one.relative = difference.norm() / frf.receptance.norm();
     error2 += difference.squaredNorm();
     size2 += frf.receptance.squaredNorm();
     sum += ratio;

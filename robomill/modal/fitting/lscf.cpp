@@ -205,7 +205,8 @@ std::vector<LscfPole> lscf_poles(const FitData& data, const LscfOptions& options
   std::vector<PowerSums> sums;
   sums.reserve(rows.size());
   for (const Output& row : rows) sums.push_back(power_sums(row, z, options.max_order));
-  const int step = std::max(1, options.max_order / std::max(1, options.orders));
+  constexpr int most_orders = 20;  // of the diagram, evenly spaced
+  const int step = std::max(1, options.max_order / most_orders);
   std::vector<LscfPole> diagram;
   std::vector<LscfPole> below;
   for (int order = 1 + (options.max_order - 1) % step; order <= options.max_order; order += step) {
@@ -257,7 +258,6 @@ std::vector<LscfPole> physical_poles(const std::vector<LscfPole>& diagram, const
     LscfPole pole = chain.back();
     pole.omega = median(omega);
     pole.zeta = median(zeta);
-    pole.stable_orders = static_cast<int>(stable);
     physical.push_back(pole);
   }
   return physical;

@@ -10,7 +10,6 @@ namespace robomill::modal::detail {
 
 struct LscfOptions {
   int max_order = 40;
-  int orders = 20;  // at most so many orders of the diagram, evenly spaced
   double zeta_high = 0.4;
   double stable_frequency = 0.01, stable_damping = 0.05, stable_mac = 0.95;
 };
@@ -22,7 +21,6 @@ struct LscfPole {
   Eigen::VectorXcd left;   // length of excitations; all ones where the set is not complete
   Eigen::VectorXcd right;  // length of responses (of entries where the set is not complete); a shape, not scaled
   bool frequency_stable = false, damping_stable = false, vector_stable = false;
-  int stable_orders = 0;  // of a physical pole: orders at which it was stable in frequency and vector
 };
 
 /// Poles of a right matrix fraction H = B A⁻¹ in z = exp(i (ω - ω_1) T) for rising orders, by the reduced normal

@@ -12,6 +12,7 @@ namespace robomill::modal {
 namespace {
 
 constexpr double stretch_s = 5e-3, pre_share = 0.05;
+constexpr double hold_off_s = 0.5;  ///< after a trigger without another, at least; never shorter than the record
 constexpr std::size_t fewest_stretch_frames = 16, fewest_pre_frames = 256;
 /// Of the noise's standard deviation; a hit below it is rejected in any case.
 constexpr double noise_factor = 10.0;
@@ -47,9 +48,6 @@ void HitTriggerOptions::validate() const {
     throw InvalidInput("force_factor", force_factor, "N", "must be finite and not 0");
   }
   if (!(level_n >= 0.0 && std::isfinite(level_n))) throw InvalidInput("level_n", level_n, "N", "must be >= 0");
-  if (!(hold_off_s >= 0.0 && hold_off_s <= longest_s)) {
-    throw InvalidInput("hold_off_s", hold_off_s, "s", "must lie between 0 and 1000");
-  }
   if (!(record_s > 0.0 && record_s <= longest_s)) {
     throw InvalidInput("record_s", record_s, "s", "must be > 0 and at most 1000");
   }
@@ -80,7 +78,7 @@ HitTrigger::HitTrigger(const HitTriggerOptions& options, Calls calls) : options_
   channels_ = static_cast<std::size_t>(options_.channels);
   record_frames_ = options_.record_frames();
   pre_frames_ = options_.pre_frames();
-  hold_off_frames_ = frames_of(options_.hold_off_s, options_.sample_rate_hz);
+  hold_off_frames_ = frames_of(hold_off_s, options_.sample_rate_hz);
   stretch_frames_ = std::max(fewest_stretch_frames, frames_of(stretch_s, options_.sample_rate_hz));
   before_.resize(pre_frames_ * channels_);
   record_.samples.reserve(record_frames_ * channels_);

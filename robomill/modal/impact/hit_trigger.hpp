@@ -19,7 +19,6 @@ struct HitTriggerOptions {
   double force_factor = 1.0;    ///< [N] per 1 of the stream; finite, not 0; may be negative
   double level_n = 0.0;         ///< a force further than this from its offset is a hit; 0: found from what comes
   double record_s = 1.0;        ///< of a record; at least 512 frames
-  double hold_off_s = 0.5;      ///< after a trigger without another, at least; never shorter than the record
   /// @throws InvalidInput naming the member
   void validate() const;
   [[nodiscard]] std::size_t record_frames() const;

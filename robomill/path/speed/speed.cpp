@@ -445,7 +445,6 @@ SpeedResult SpeedSolver::solve(SpeedSegment* segments, std::size_t size, std::si
     const double promised_s = direction.promised_s();
     for (std::size_t i = first; i < last; ++i) segments[i].b += take * work[i].change;
     const double time_s = direction.time(), gained_s = best_s - time_s;
-    out.gap_s = gap;
     if (time_s < best_s) {
       best_s = time_s;
       for (std::size_t i = first; i < last; ++i) work[i].best = segments[i].b;

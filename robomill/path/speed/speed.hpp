@@ -27,7 +27,6 @@ struct SpeedResult {
   bool converged = false;
   int iterations = 0;
   double duration_s = 0.0;
-  double gap_s = 0.0;
 };
 
 /// The fastest b(u) = (du/dt)² on a row of segments: minimises ∫ du / √b over quadratic splines, with every channel's

@@ -70,7 +70,6 @@ JudgedCut judged_cut(const BlockCut& at, const modal::ModalModel& modes) {
       return std::clamp(depth, options.axial_depth_m[0], options.axial_depth_m[1]);
     };
     out.limit_5_percent_m = looked_at(block.limit_5_percent_m);
-    out.limit_50_percent_m = looked_at(block.limit_50_percent_m);
     out.limit_95_percent_m = looked_at(block.limit_95_percent_m);
     out.chatter_frequency_hz = block.limit.chatter_frequency_hz;
     out.mode = block.limit.mode;

@@ -57,11 +57,7 @@ GainMargin search_gain(PointEvaluator& evaluator, const OperatingPoint& point, d
   const Limit limit = limits_between(column, axes, 0, 1, tolerance, progress).front();
   if (limit.status == Limit::Status::stable_in_range) return {};
   const bool below = limit.axial_depth_m <= least_gain;
-  return {.status = below ? GainMargin::Status::below_range : GainMargin::Status::found,
-          .gain = limit.axial_depth_m,
-          .chatter_frequency_hz = limit.chatter_frequency_hz,
-          .kind = limit.kind,
-          .mode = limit.mode};
+  return {.status = below ? GainMargin::Status::below_range : GainMargin::Status::found, .gain = limit.axial_depth_m};
 }
 
 double gain_of(const GainMargin& margin) {

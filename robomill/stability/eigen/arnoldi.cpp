@@ -225,7 +225,6 @@ bool Arnoldi::converged(std::size_t lane, std::size_t columns, Dominant& out) {
   ritz_[lane] = small_.vector(out.multiplier);
   const double next = hessenberg_[(columns - 1) * (most_ + 1) + columns].v[lane];
   out.residual = columns == size_ ? 0.0 : next * std::abs(ritz_[lane].back());
-  out.iterations = static_cast<int>(columns);
   if (!(out.residual <= tolerance_ * (std::abs(out.multiplier) + 0.1 * small_.norm()))) return false;
   out.by = Dominant::By::arnoldi;
   return true;
@@ -315,7 +314,6 @@ void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {
     full_[lane].normalize();
     out[lane].multiplier = upper_half(value);
     out[lane].residual = (matrix[lane] * full_[lane] - out[lane].multiplier * full_[lane]).norm();
-    out[lane].iterations += static_cast<int>(size_);
     out[lane].by = Dominant::By::full_matrix;
   }
 }

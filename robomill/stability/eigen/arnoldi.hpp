@@ -15,7 +15,6 @@ namespace robomill::stability::detail {
 struct Dominant {
   std::complex<double> multiplier = 0.0;  ///< imaginary part >= 0; infinite where the motion overflows within a period
   double residual = 0.0;                  ///< ‖Φ x - μ x‖ with ‖x‖ = 1
-  int iterations = 0;                     ///< passes over the period
   enum class By { arnoldi, full_matrix, unsettled } by = By::unsettled;
 };
 

@@ -34,8 +34,6 @@ class ContactBasis {
 
   /// ω_P: of tooth passing for equal pitch, of rotation otherwise [rad/s].
   [[nodiscard]] double period_frequency_rad_per_s() const { return period_frequency_; }
-  [[nodiscard]] int polynomials() const { return static_cast<int>(count_); }
-  [[nodiscard]] int harmonics() const { return static_cast<int>(far_); }
   /// A(ω) [m^-1], 2m x 2m: the x components of all polynomials, then y's.
   /// @param covered_only  leave out what the measured FRFs do not cover
   void matrix(double frequency_rad_per_s, Eigen::MatrixXcd& out, bool covered_only = false) const;

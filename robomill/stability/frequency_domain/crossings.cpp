@@ -107,7 +107,7 @@ class Tracer {
   Tracer(const MatrixAt& matrix, const Sweep& sweep)
       : matrix_(matrix), sweep_(sweep), floor_(0.7 / sweep.largest_gain) {}
 
-  std::vector<Crossing> run() {
+  std::vector<GainCrossing> run() {
     std::vector<double> nodes = sweep_.nodes;
     nodes.push_back(sweep_.from);
     nodes.push_back(sweep_.to);
@@ -124,9 +124,9 @@ class Tracer {
       interval(left, right, 0);
       left = right;
     }
-    if (sweep_.real_from) ends(first, Crossing::At::from);
-    if (sweep_.real_to) ends(left, Crossing::At::to);
-    std::ranges::sort(found_, {}, &Crossing::gain);
+    if (sweep_.real_from) ends(first, GainCrossing::At::from);
+    if (sweep_.real_to) ends(left, GainCrossing::At::to);
+    std::ranges::sort(found_, {}, &GainCrossing::gain);
     return found_;
   }
 
@@ -139,11 +139,11 @@ class Tracer {
     return s;
   }
 
-  void ends(const Sample& s, Crossing::At at) {
+  void ends(const Sample& s, GainCrossing::At at) {
     for (const Complex value : s.values) {
       if (value.real() * sweep_.largest_gain < 1.0 || std::abs(value.imag()) > real_enough * value.real()) continue;
       if (std::abs(nearest(s.values, std::conj(value)) - value) > 0.5 * std::abs(value.imag())) continue;  // a pair
-      const double step = (sweep_.to - sweep_.from) * (at == Crossing::At::from ? 1e-4 : -1e-4);
+      const double step = (sweep_.to - sweep_.from) * (at == GainCrossing::At::from ? 1e-4 : -1e-4);
       const Sample beside = sample(s.frequency + step);
       const double slope = (nearest(beside.values, value).imag() - value.imag()) / step;
       found_.push_back({s.frequency, 1.0 / value.real(), slope < 0.0, at});
@@ -236,10 +236,10 @@ class Tracer {
     if (sweep_.real_from && frequency - sweep_.from < 1e-7 * range) return;
     if (sweep_.real_to && sweep_.to - frequency < 1e-7 * range) return;
     const double gain = 1.0 / value.real();
-    for (const Crossing& c : found_) {
+    for (const GainCrossing& c : found_) {
       if (std::abs(c.frequency - frequency) < 1e-9 * range && std::abs(c.gain - gain) < 1e-7 * gain) return;
     }
-    found_.push_back({frequency, gain, opens, Crossing::At::inside});
+    found_.push_back({frequency, gain, opens, GainCrossing::At::inside});
   }
 
   const MatrixAt& matrix_;
@@ -248,12 +248,12 @@ class Tracer {
   bool last_below_ = false;
   Eigen::MatrixXcd work_;
   LargestEigenvalues eigenvalues_;
-  std::vector<Crossing> found_;
+  std::vector<GainCrossing> found_;
 };
 
 }  // namespace
 
-std::vector<Crossing> find_crossings(const MatrixAt& matrix, const Sweep& sweep) {
+std::vector<GainCrossing> find_crossings(const MatrixAt& matrix, const Sweep& sweep) {
   return Tracer(matrix, sweep).run();
 }
 
@@ -278,7 +278,7 @@ Complex nearest_eigenvalue(const Eigen::MatrixXcd& matrix, Complex guess, Eigen:
   return value;
 }
 
-Crossing follow(const MatrixAt& matrix, const Crossing& from) {
+GainCrossing follow(const MatrixAt& matrix, const GainCrossing& from) {
   Eigen::MatrixXcd work;
   Eigen::VectorXcd vector;
   Complex guess = 1.0 / from.gain;
@@ -287,9 +287,9 @@ Crossing follow(const MatrixAt& matrix, const Crossing& from) {
     guess = nearest_eigenvalue(work, guess, vector);
     return guess;
   };
-  Crossing out = from;
+  GainCrossing out = from;
   Complex value = value_at(from.frequency);
-  if (from.at == Crossing::At::inside) {
+  if (from.at == GainCrossing::At::inside) {
     double before = from.frequency;
     Complex value_before = value;
     double step = 1e-6 * from.frequency;
@@ -305,7 +305,7 @@ Crossing follow(const MatrixAt& matrix, const Crossing& from) {
       step = std::clamp(next, -0.02 * from.frequency, 0.02 * from.frequency);
     }
   }
-  const double allowed = from.at == Crossing::At::inside ? 1e-6 : real_enough;
+  const double allowed = from.at == GainCrossing::At::inside ? 1e-6 : real_enough;
   const bool found = value.real() > 0.0 && std::abs(value.imag()) <= allowed * value.real();
   out.gain = found ? 1.0 / value.real() : 0.0;
   return out;

@@ -57,7 +57,7 @@ class Solver {
  private:
   struct Found {
     double depth_m = 0.0;
-    Crossing crossing;
+    GainCrossing crossing;
     std::shared_ptr<const ContactBasis> basis;
   };
 
@@ -74,7 +74,7 @@ class Solver {
   }
 
   /// Resonances stand at ω where ω + n ω_P is their frequency.
-  [[nodiscard]] std::vector<Crossing> crossings(const ContactBasis& basis, double largest_depth_m) const {
+  [[nodiscard]] std::vector<GainCrossing> crossings(const ContactBasis& basis, double largest_depth_m) const {
     Sweep sweep;
     const double period = basis.period_frequency_rad_per_s();
     sweep.to = 0.5 * period;
@@ -96,11 +96,11 @@ class Solver {
   std::optional<Found> first_crossing(FrequencyLimit& limit) const {
     const auto level0 = basis(options_.largest_depth_m, first_level);
     // Fewer eigenvalues count for a small depth: the first crossing is looked for from there.
-    std::vector<Crossing> all;
+    std::vector<GainCrossing> all;
     for (double share = options_.all_crossings ? 1.0 : 1.0 / 64.0; share <= 1.0 && all.empty(); share *= 4.0) {
       all = crossings(*level0, share * options_.largest_depth_m);
     }
-    for (const Crossing& c : all) {
+    for (const GainCrossing& c : all) {
       const Motion motion = motion_of({c.gain, c, level0});
       limit.crossings.push_back({c.gain, motion.frequency_hz, kind_of(c), c.opens});
     }
@@ -120,7 +120,7 @@ class Solver {
     Look out{.depth_m = depth_m};
     const auto level0 = basis(depth_m, first_level);
     int count = 0;
-    for (const Crossing& c : crossings(*level0, 1.5 * depth_m)) {
+    for (const GainCrossing& c : crossings(*level0, 1.5 * depth_m)) {
       if (c.gain > depth_m) {
         out.nearest_ratio = std::min(out.nearest_ratio, c.gain / depth_m);
         continue;
@@ -241,11 +241,11 @@ class Solver {
     return motion;
   }
 
-  static BifurcationType kind_of(const Crossing& crossing) {
+  static BifurcationType kind_of(const GainCrossing& crossing) {
     switch (crossing.at) {
-      case Crossing::At::from:
+      case GainCrossing::At::from:
         return BifurcationType::fold;
-      case Crossing::At::to:
+      case GainCrossing::At::to:
         return BifurcationType::flip;
       default:
         return BifurcationType::hopf;
@@ -258,8 +258,6 @@ class Solver {
     limit.chatter_frequency_hz = motion.frequency_hz;
     limit.mode = motion.mode;
     limit.kind = kind_of(found.crossing);
-    limit.harmonics = found.basis->harmonics();
-    limit.polynomials = found.basis->polynomials();
     const DepthCrossing lowest = {found.depth_m, motion.frequency_hz, limit.kind, true};
     if (limit.crossings.empty()) {
       limit.crossings = {lowest};

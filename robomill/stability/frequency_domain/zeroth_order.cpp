@@ -76,12 +76,12 @@ FrequencyLimit limit_at(const cutting::Milling& milling, const FrequencyResponse
   const Sweep sweep = sweep_of(response, speed * milling.tool.teeth, options.largest_depth_m);
   FrequencyLimit limit;
   limit.spindle_speed_rad_per_s = speed;
-  const std::vector<Crossing> crossings = find_crossings(matrix, sweep);
-  for (const Crossing& c : crossings) {
+  const std::vector<GainCrossing> crossings = find_crossings(matrix, sweep);
+  for (const GainCrossing& c : crossings) {
     limit.crossings.push_back({c.gain, c.frequency / (2.0 * pi), BifurcationType::hopf, c.opens});
   }
   if (crossings.empty()) return limit;
-  const Crossing& lowest = crossings.front();
+  const GainCrossing& lowest = crossings.front();
   limit.status = FrequencyLimit::Status::found;
   limit.axial_depth_m = lowest.gain;
   limit.chatter_frequency_hz = lowest.frequency / (2.0 * pi);
