@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "robomill/jobs/pages.hpp"
 #include "robomill/jobs/summary.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
-#include "robomill/base/export.hpp"
 #include "robomill/cell/cell.hpp"
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/path/files/path_clearance.hpp"
@@ -23,14 +22,14 @@ namespace robomill::cell {
 ///                 in the part
 /// @param assumed  takes what is taken for a cutter that is not known
 /// @throws InvalidInput as robot::CollisionChecker
-[[nodiscard]] ROBOMILL_API std::unique_ptr<robot::CollisionChecker> clearance_checker(const Cell& cell,
-                                                                                      const cutting::Cutter* cutter,
-                                                                                      std::vector<Assumption>& assumed);
+[[nodiscard]] std::unique_ptr<robot::CollisionChecker> clearance_checker(const Cell& cell,
+                                                                         const cutting::Cutter* cutter,
+                                                                         std::vector<Assumption>& assumed);
 
 /// Keeps of a trajectory, sample by sample, the positions that a check of it must look at: those after which some
 /// point of arm or tool has moved on by a step, and those where blocks end. Never more than `most_looks`: with more the
 /// step is doubled.
-class ROBOMILL_API PathLooks {
+class PathLooks {
  public:
   static constexpr std::size_t most_looks = 200'000;
   /// @param checker  outlives this
@@ -65,9 +64,9 @@ class ROBOMILL_API PathLooks {
 };
 
 /// The longest step between two looks at a cell: twice its clearance, within 0.5 and 5 mm.
-[[nodiscard]] ROBOMILL_API double look_step_m(const robot::CellGeometry& geometry);
+[[nodiscard]] double look_step_m(const robot::CellGeometry& geometry);
 
 /// "spindle collides with post", "holder comes within 0.4 mm of vise".
-[[nodiscard]] ROBOMILL_API std::string near_miss_text(const robot::Clearance& clearance);
+[[nodiscard]] std::string near_miss_text(const robot::Clearance& clearance);
 
 }  // namespace robomill::cell

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/cell/cell.hpp"
 #include "robomill/path/posture.hpp"
 
@@ -20,7 +19,7 @@ namespace robomill::cell {
 /// Puts a posture in the place of robot.start_joints_deg, and nearness to it before margin.
 /// @param joints_deg  a value a joint
 /// @throws InvalidInput of --posture if the machine has other joints or a value is not within its limits
-ROBOMILL_API void ask_for_posture(Cell& cell, const std::vector<double>& joints_deg);
+void ask_for_posture(Cell& cell, const std::vector<double>& joints_deg);
 
 /// "-2, -77, 91, 45, 85, -105°; shoulder, elbow and wrist as at home": where the program starts.
 [[nodiscard]] std::string posture_text(const path::PostureChoice& choice, int joints,

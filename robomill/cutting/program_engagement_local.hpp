@@ -5,12 +5,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/program/program.hpp"
 
 /// The cut of a finishing program from the program alone, without stock: its neighbouring passes say how far apart they
 /// lie, on which side, and how the surface bends.
-// Method: robomill/cutting/README.md, "Engagement along a program (`program_engagement.hpp`)"
 namespace robomill::cutting {
 
 /// At the middle of a block. F as in program_engagement.hpp: x_F along the tip's way, z_F the axis without its part
@@ -33,7 +31,7 @@ struct LocalCut {
 /// what a pass leaves is a plane or a cylinder along the feed. Curvatures and distances are those of the surface on
 /// which the tips run: for a ball of radius R on a surface of curvature k, tips' curvature k / (1 + k R) and distance
 /// (1 + k R) times that on the surface.
-class ROBOMILL_API LocalCuts {
+class LocalCuts {
  public:
   /// @param reach_m  > 0, the cutter's diameter; a pass at (y, z) across the feed is a neighbour where √(y² + z²) <=
   ///     reach_m, |z| <= |y| and |y| >= 1e-3 reach_m

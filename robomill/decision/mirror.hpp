@@ -4,10 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/decision/README.md, "Mirrored paths (`mirror.hpp`)"
-
 namespace robomill::decision {
 
 /// A place of the finished surface, in any axes that all places share.
@@ -18,7 +14,7 @@ struct WallPlace {
 };
 
 /// What places ask of an offset o of the tool's tip: to minimise Σ w (e − n·o)².
-struct ROBOMILL_API MirrorCondition {
+struct MirrorCondition {
   Eigen::Matrix3d normals_m = Eigen::Matrix3d::Zero();  ///< Σ w n nᵀ
   Eigen::Vector3d wanted_m2 = Eigen::Vector3d::Zero();  ///< Σ w n e
   double squares_m3 = 0.0;                              ///< Σ w e²
@@ -31,11 +27,11 @@ struct ROBOMILL_API MirrorCondition {
   /// Root mean square of e − n·o; 0 where nothing is asked.
   [[nodiscard]] double rms_m(const Eigen::Vector3d& offset_m) const;
 };
-[[nodiscard]] ROBOMILL_API MirrorCondition condition_of(std::span<const WallPlace> places);
+[[nodiscard]] MirrorCondition condition_of(std::span<const WallPlace> places);
 
 /// Whether two walls that face each other want opposite offsets: places have normals both along one direction and
 /// against it, and the offset that suits both best leaves more than half of their errors.
-[[nodiscard]] ROBOMILL_API bool opposite_walls(std::span<const WallPlace> places);
+[[nodiscard]] bool opposite_walls(std::span<const WallPlace> places);
 
 /// One block of a path.
 struct MirrorBlock {
@@ -44,7 +40,7 @@ struct MirrorBlock {
   MirrorCondition condition = {};  ///< width 0: not to be compensated
 };
 
-struct ROBOMILL_API MirrorOptions {
+struct MirrorOptions {
   double max_offset_m = 0.5e-3;  ///< > 0; longer offsets are cut off there
   double blend_m = 0.0;          ///< >= 0; way over which an offset dies away along blocks that are not compensated
   /// @throws InvalidInput naming the member
@@ -62,7 +58,6 @@ struct MirrorOffsets {
 /// it is the mean of theirs and in a corner both walls get what they ask for. Along blocks that are not compensated
 /// it dies away over blend_m, up to the next rapid move.
 /// @throws InvalidInput if an option is out of range
-[[nodiscard]] ROBOMILL_API MirrorOffsets mirror_offsets(std::span<const MirrorBlock> blocks,
-                                                        const MirrorOptions& options);
+[[nodiscard]] MirrorOffsets mirror_offsets(std::span<const MirrorBlock> blocks, const MirrorOptions& options);
 
 }  // namespace robomill::decision

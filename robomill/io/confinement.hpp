@@ -1,13 +1,11 @@
 #pragma once
 #include <filesystem>
 
-#include "robomill/base/export.hpp"
-
 namespace robomill::io {
 
 /// While it lives, no file outside one folder is read or written through io/, whatever a document names: for a server,
 /// whose clients name files. Links are followed before the decision.
-class ROBOMILL_API Confinement {
+class Confinement {
  public:
   /// @throws InvalidInput if there is no such folder, or another one lives
   explicit Confinement(const std::filesystem::path& folder);

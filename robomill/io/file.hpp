@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/io/descriptor.hpp"
 
 namespace robomill::io {
@@ -18,7 +17,7 @@ namespace robomill::io {
 enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 
 /// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav; case does not matter.
-[[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
+[[nodiscard]] Format format_of(const std::filesystem::path& path);
 
 /// A path and, where it is a link, what it leads to, which may be missing, and so on.
 [[nodiscard]] std::vector<std::filesystem::path> links_of(const std::filesystem::path& path);
@@ -39,20 +38,20 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 /// The whole content of a file.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is empty or holds more than
 /// max_bytes
-[[nodiscard]] ROBOMILL_API std::string read_file(const std::filesystem::path& path,
-                                                 std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
+[[nodiscard]] std::string read_file(const std::filesystem::path& path,
+                                    std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
 
 /// Makes a folder, and those above it, where they are missing.
 /// @throws InvalidInput if it cannot be made
-ROBOMILL_API void make_folder(const std::filesystem::path& folder);
+void make_folder(const std::filesystem::path& folder);
 
 /// Makes a file appear whole or not at all, by a PendingFile. A device or a pipe is written through.
 /// @throws InvalidInput if the place cannot be written
-ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view content);
+void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Takes a regular file away, through a link the one it points to. Whether there was one.
 /// @throws InvalidInput if it cannot be removed
-ROBOMILL_API bool remove_file(const std::filesystem::path& path);
+bool remove_file(const std::filesystem::path& path);
 
 /// A file that appears whole or not at all: it is written under a temporary name beside its place, made durable and
 /// renamed. It goes away unless committed. All that robomill writes into regular files, but for logs, is written here,

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
 namespace robomill::io {
 
 /// Columns over time, as recorded.
@@ -21,11 +19,11 @@ struct Record {
 
   /// The column of that name, or of that number from 1 where no column has the name.
   /// @throws InvalidInput naming the columns that are there
-  [[nodiscard]] ROBOMILL_API const Eigen::VectorXd& column(const std::string& name_or_number) const;
+  [[nodiscard]] const Eigen::VectorXd& column(const std::string& name_or_number) const;
   /// Its place, and its errors.
-  [[nodiscard]] ROBOMILL_API std::size_t place(const std::string& name_or_number) const;
+  [[nodiscard]] std::size_t place(const std::string& name_or_number) const;
   /// Its unit as the row of units says it, else as its name does (io/si.hpp); empty: not said.
-  [[nodiscard]] ROBOMILL_API std::string unit(std::size_t place) const;
+  [[nodiscard]] std::string unit(std::size_t place) const;
 };
 
 struct RecordOptions {
@@ -41,26 +39,26 @@ struct RecordOptions {
 /// column), .uff .unv .uf (time responses), .wav (one channel a column).
 /// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
 ///     number of values than those before it, or the time does not run evenly
-[[nodiscard]] ROBOMILL_API Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
+[[nodiscard]] Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
 
 /// The rate of a record for which the user gives one too; 0: neither is known. One that only a header states gives way
 /// to the user's, with a note. @param key  what the user gave it as; @param given_hz  0: not given
 /// @throws InvalidInput with the record's file where both are known, none is only stated, and they differ
-[[nodiscard]] ROBOMILL_API double rate_of(const Record& record, double given_hz, std::string_view key,
-                                          std::vector<std::string>& notes);
+[[nodiscard]] double rate_of(const Record& record, double given_hz, std::string_view key,
+                             std::vector<std::string>& notes);
 
 /// What a file is that holds a record and is not read, and what to do: "a LabVIEW measurement file, which is not read
 /// yet". Empty texts where the ending says nothing of it.
 struct UnreadRecord {
   std::string what = {}, remedy = {};
 };
-[[nodiscard]] ROBOMILL_API UnreadRecord unread_record(const std::filesystem::path& path);
+[[nodiscard]] UnreadRecord unread_record(const std::filesystem::path& path);
 
 /// The rate of a column of time that never falls and has too few digits for its steps, some of which are therefore 0:
 /// that of the straight line through all of it. 0 where the column is none.
-[[nodiscard]] ROBOMILL_API double rounded_sample_rate_of(const Eigen::VectorXd& time_s);
+[[nodiscard]] double rounded_sample_rate_of(const Eigen::VectorXd& time_s);
 
 /// The rate of evenly rising times. @throws InvalidInput naming `where` if a step is more than half a step off
-[[nodiscard]] ROBOMILL_API double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where);
+[[nodiscard]] double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where);
 
 }  // namespace robomill::io

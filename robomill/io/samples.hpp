@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
-#include "robomill/base/export.hpp"
 #include "robomill/io/toml_source.hpp"
 
 // Method: robomill/io/README.md, "Sample values"
@@ -18,14 +17,14 @@ inline constexpr const char* sample_left = "Sample value left as it was";
 /// [{ frequency_hz = 620, damping_ratio = 0.03, modal_mass_kg = 0.6 }]. The numbers and texts of the value in their
 /// order.
 /// @param value  as TOML writes it, in one line
-[[nodiscard]] ROBOMILL_API std::string sample_mark(std::string_view value);
+[[nodiscard]] std::string sample_mark(std::string_view value);
 
 /// The values of a document that are still what their marks say: nobody has given them. Keys that the source sets are
 /// given.
 /// @throws InvalidInput if the file cannot be read
-[[nodiscard]] ROBOMILL_API std::vector<Assumption> sample_values(const TomlSource& source);
+[[nodiscard]] std::vector<Assumption> sample_values(const TomlSource& source);
 
 /// A document whose key bears no mark any more: somebody has given its value.
-[[nodiscard]] ROBOMILL_API std::string without_sample_mark(std::string document, std::string_view key);
+[[nodiscard]] std::string without_sample_mark(std::string document, std::string_view key);
 
 }  // namespace robomill::io

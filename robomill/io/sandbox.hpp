@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
 namespace robomill::io {
 
 /// What may still be opened. Of a folder all below it; what is not there is left out.
@@ -21,7 +19,7 @@ struct FileRights {
 /// made to do: by Landlock, for ever. What is open already stays open. Nor do they signal programs beside them (Linux
 /// 6.12).
 /// False where the kernel has no Landlock: nothing has changed then.
-ROBOMILL_API bool restrict_files(const FileRights& rights);
+bool restrict_files(const FileRights& rights);
 
 /// From here on this process can open so many more descriptors than it has now. It needs nothing of the kernel.
 void restrict_to_more_files(int count);

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
 // Method: robomill/io/README.md, "Usual ranges"
 
 namespace robomill::io {
@@ -33,7 +31,7 @@ struct UsualRange {
 
 /// The row of a key: that of its whole path before that of its last part; null where there is none.
 /// @param key  "tool[0].length_mm": indices do not count
-[[nodiscard]] ROBOMILL_API const UsualRange* usual_range(std::string_view key);
+[[nodiscard]] const UsualRange* usual_range(std::string_view key);
 
 /// What is unusual about a value.
 struct Unusual {
@@ -44,16 +42,16 @@ struct Unusual {
 
 /// Compares numbers other than 0 with the row of their key; the first that is outside it, none where all are usual or
 /// no row is known. The hint names the first unit that would bring the value into the range.
-[[nodiscard]] ROBOMILL_API std::optional<Unusual> unusual_value(std::string_view key, std::span<const double> values);
+[[nodiscard]] std::optional<Unusual> unusual_value(std::string_view key, std::span<const double> values);
 
 /// The same as a sentence: "Warning: where: key = value unit; is unusual: … is usual. hint".
-[[nodiscard]] ROBOMILL_API std::optional<std::string> unusual_warning(std::string_view where, std::string_view key,
-                                                                      std::span<const double> values);
+[[nodiscard]] std::optional<std::string> unusual_warning(std::string_view where, std::string_view key,
+                                                         std::span<const double> values);
 
 /// What a note that is a warning begins with.
 inline constexpr std::string_view warning_label = "Warning: ";
 
 /// Takes the warnings out of notes, without the label.
-[[nodiscard]] ROBOMILL_API std::vector<std::string> take_warnings(std::vector<std::string>& notes);
+[[nodiscard]] std::vector<std::string> take_warnings(std::vector<std::string>& notes);
 
 }  // namespace robomill::io

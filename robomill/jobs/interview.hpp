@@ -4,16 +4,13 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/base/export.hpp"
 #include "robomill/jobs/init.hpp"
-
-// Method: robomill/jobs/README.md, "Files to begin with (`init.hpp`)"
 
 namespace robomill::jobs {
 
 /// Questions in shop terms whose answers are put into the documents that robomill init is to write: a value each in its
 /// place, comments as they were. Answers have units or none: "0.25 in", "100 mV/g", "12 Nm", "7.5 kW".
-class ROBOMILL_API Interview {
+class Interview {
  public:
   /// @param files  outlives the interview; a question whose keys none of its documents has is not asked
   Interview(Template kind, InitFiles& files);

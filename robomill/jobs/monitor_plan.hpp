@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
+#include "robomill/jobs/plan.hpp"
 #include "robomill/modal/modes.hpp"
-
-// Method: robomill/jobs/README.md, "Planned monitors (`monitor_plan.hpp`)"
 
 namespace robomill::jobs {
 
@@ -18,7 +16,7 @@ struct SpeedStretch {
 };
 
 /// A decided cut, as its monitor must know it.
-struct ROBOMILL_API MonitorPlan {
+struct MonitorPlan {
   std::vector<SpeedStretch> speeds = {};  ///< at least one, in the order of the program
   int teeth = 0;                          ///< of the cutter, in [1, 64]; required
   /// modes.json and lobes.toml of the cut, relative to the folder of monitor.toml; empty: none.
@@ -39,17 +37,11 @@ struct ROBOMILL_API MonitorPlan {
 /// The name of MonitorPlan::modes beside monitor.toml.
 inline constexpr const char* monitor_modes_name = "monitor_modes.json";
 
-/// The files of a planned monitor, which stand in one folder.
-struct PlannedMonitor {
-  std::string toml = {};        ///< monitor.toml
-  std::string modes_json = {};  ///< monitor_modes_name; empty where MonitorPlan::modes is none
-};
-
 /// monitor.toml of a decided cut, which `robomill monitor` runs with: the default detector, comb-cusum, with speed and
 /// teeth of the cut. Of several speeds none is written: a column spindle_speed_rpm or the blocks of MQTT carry the one
 /// that runs, and remarks list them by line. What only the machine knows (channels, sample rate, filter) is as by
 /// default, and a remark says so.
 /// @throws InvalidInput as validate
-[[nodiscard]] ROBOMILL_API PlannedMonitor plan_monitor(const MonitorPlan& plan);
+[[nodiscard]] PlannedMonitor plan_monitor(const MonitorPlan& plan);
 
 }  // namespace robomill::jobs

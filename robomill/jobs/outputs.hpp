@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/base/export.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
@@ -47,58 +46,58 @@ enum class Document {
 };
 
 /// Before the work. @throws InvalidInput naming the file if this document is not written with its ending
-ROBOMILL_API void require_output(Document document, const std::filesystem::path& path);
+void require_output(Document document, const std::filesystem::path& path);
 
 /// A result as text: JSON, or another of the formats that require_output takes. FRFs and simulations as JSON alone.
-[[nodiscard]] ROBOMILL_API std::string document(const FrfJobResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const ModesResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const cell::ModesOfPosture& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const TipPrediction& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const ToolsResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const JointResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const LobesJobResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const ExplainResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const SimulateResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const process::ForcesResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const CoefficientsResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const StiffnessResult& result, io::Format format);
-[[nodiscard]] ROBOMILL_API std::string document(const cell::CellCheck& result, io::Format format);
+[[nodiscard]] std::string document(const FrfJobResult& result, io::Format format);
+[[nodiscard]] std::string document(const ModesResult& result, io::Format format);
+[[nodiscard]] std::string document(const cell::ModesOfPosture& result, io::Format format);
+[[nodiscard]] std::string document(const TipPrediction& result, io::Format format);
+[[nodiscard]] std::string document(const ToolsResult& result, io::Format format);
+[[nodiscard]] std::string document(const JointResult& result, io::Format format);
+[[nodiscard]] std::string document(const LobesJobResult& result, io::Format format);
+[[nodiscard]] std::string document(const ExplainResult& result, io::Format format);
+[[nodiscard]] std::string document(const SimulateResult& result, io::Format format);
+[[nodiscard]] std::string document(const process::ForcesResult& result, io::Format format);
+[[nodiscard]] std::string document(const CoefficientsResult& result, io::Format format);
+[[nodiscard]] std::string document(const StiffnessResult& result, io::Format format);
+[[nodiscard]] std::string document(const cell::CellCheck& result, io::Format format);
 
 /// Writes a result in the format that the file's ending names. @throws InvalidInput if the place cannot be written
-ROBOMILL_API void write_document(const std::filesystem::path& path, const FrfJobResult& result,
-                                 const modal::FrfWriteOptions& options = {});
-ROBOMILL_API void write_document(const std::filesystem::path& path, const ModesResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const cell::ModesOfPosture& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const TipPrediction& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const ToolsResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const JointResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const LobesJobResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const ExplainResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const SimulateResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const process::ForcesResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const CoefficientsResult& result);
+void write_document(const std::filesystem::path& path, const FrfJobResult& result,
+                    const modal::FrfWriteOptions& options = {});
+void write_document(const std::filesystem::path& path, const ModesResult& result);
+void write_document(const std::filesystem::path& path, const cell::ModesOfPosture& result);
+void write_document(const std::filesystem::path& path, const TipPrediction& result);
+void write_document(const std::filesystem::path& path, const ToolsResult& result);
+void write_document(const std::filesystem::path& path, const JointResult& result);
+void write_document(const std::filesystem::path& path, const LobesJobResult& result);
+void write_document(const std::filesystem::path& path, const ExplainResult& result);
+void write_document(const std::filesystem::path& path, const SimulateResult& result);
+void write_document(const std::filesystem::path& path, const process::ForcesResult& result);
+void write_document(const std::filesystem::path& path, const CoefficientsResult& result);
 /// As .toml, a line for cell.toml, only where the stiffness converged.
-ROBOMILL_API void write_document(const std::filesystem::path& path, const StiffnessResult& result);
-ROBOMILL_API void write_document(const std::filesystem::path& path, const cell::CellCheck& result);
+void write_document(const std::filesystem::path& path, const StiffnessResult& result);
+void write_document(const std::filesystem::path& path, const cell::CellCheck& result);
 
 /// Before its receptances are kept for other tools. @throws InvalidInput naming the option if the assembly has no
 /// measured holder
-ROBOMILL_API void require_holder(const TipPrediction& result, const std::string& option);
+void require_holder(const TipPrediction& result, const std::string& option);
 
 /// Why a result is not the answer that its verb is for (exit 3): "the fit did not converge". Empty: it is.
-[[nodiscard]] ROBOMILL_API std::string shortfall(const FrfJobResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const ModesResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const cell::ModesOfPosture& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const TipPrediction& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const ToolsResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const JointResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const LobesJobResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const ExplainResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const SimulateResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const process::ForcesResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const CoefficientsResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const StiffnessResult& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const cell::CellCheck& result);
-[[nodiscard]] ROBOMILL_API std::string shortfall(const process::SmoothResult& result);
+[[nodiscard]] std::string shortfall(const FrfJobResult& result);
+[[nodiscard]] std::string shortfall(const ModesResult& result);
+[[nodiscard]] std::string shortfall(const cell::ModesOfPosture& result);
+[[nodiscard]] std::string shortfall(const TipPrediction& result);
+[[nodiscard]] std::string shortfall(const ToolsResult& result);
+[[nodiscard]] std::string shortfall(const JointResult& result);
+[[nodiscard]] std::string shortfall(const LobesJobResult& result);
+[[nodiscard]] std::string shortfall(const ExplainResult& result);
+[[nodiscard]] std::string shortfall(const SimulateResult& result);
+[[nodiscard]] std::string shortfall(const process::ForcesResult& result);
+[[nodiscard]] std::string shortfall(const CoefficientsResult& result);
+[[nodiscard]] std::string shortfall(const StiffnessResult& result);
+[[nodiscard]] std::string shortfall(const cell::CellCheck& result);
+[[nodiscard]] std::string shortfall(const process::SmoothResult& result);
 
 }  // namespace robomill::jobs

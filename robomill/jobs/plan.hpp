@@ -5,18 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
-#include "robomill/page/report.hpp"
 #include "robomill/process/blocks.hpp"
 #include "robomill/process/decide.hpp"
 #include "robomill/process/forces.hpp"
@@ -42,6 +41,12 @@ struct FeedDirections {
   Eigen::VectorXd direction_rad = {};     ///< length n, increasing, counter-clockwise from x of the FRFs
   Eigen::VectorXd lowest_limit_m = {};    ///< length n, lowest over all speeds
   Eigen::VectorXd limit_at_speed_m = {};  ///< length n, at the recommended speed; empty where none was recommended
+};
+
+/// The files of a planned monitor, which stand in one folder.
+struct PlannedMonitor {
+  std::string toml = {};        ///< monitor.toml
+  std::string modes_json = {};  ///< monitor_modes.json; empty where no modes are planned
 };
 
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
@@ -113,11 +118,6 @@ inline constexpr std::uint64_t default_seed = 1;
 
 /// Whether the job has the answer that it is for: conditions or a recommendation within every limit, a path that holds.
 [[nodiscard]] ROBOMILL_API bool reached(const PlanResult& result);
-
-/// The report of a job.
-/// @param files  that stand beside it
-[[nodiscard]] ROBOMILL_API page::Report make_report(const PlanResult& result,
-                                                    const std::vector<page::StageFile>& files);
 
 /// plan.json as text: the recommendation, its alternatives, the test cuts, and every stage's result.
 [[nodiscard]] ROBOMILL_API std::string plan_json(const PlanResult& result);

@@ -12,6 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/process/blocks/stand_at.hpp"
 #include "robomill/process/decide/block_times.hpp"
 #include "robomill/process/decide/motion_loads.hpp"

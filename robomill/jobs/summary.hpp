@@ -3,10 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
-
-// Method: robomill/jobs/README.md, "Outputs"
 
 namespace robomill::cell {
 struct ModesOfPosture;
@@ -35,23 +32,22 @@ struct ToolsResult;
 
 /// A result in the lines that the command line prints, and that a report shows where no script runs. Texts out of files
 /// are printable.
-[[nodiscard]] ROBOMILL_API std::string summary(const PlanResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const FrfJobResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const ModesResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const cell::ModesOfPosture& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const TipPrediction& result);
+[[nodiscard]] std::string summary(const PlanResult& result);
+[[nodiscard]] std::string summary(const FrfJobResult& result);
+[[nodiscard]] std::string summary(const ModesResult& result);
+[[nodiscard]] std::string summary(const cell::ModesOfPosture& result);
+[[nodiscard]] std::string summary(const TipPrediction& result);
 /// @param cut  that the tools were tried in, if any
-[[nodiscard]] ROBOMILL_API std::string summary(const std::vector<ToolResult>& results,
-                                               const coupling::AssemblyFile& assembly,
-                                               const std::optional<LobesFile>& cut);
-[[nodiscard]] ROBOMILL_API std::string summary(const ToolsResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const JointResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const LobesJobResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const ExplainResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const SimulateResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const process::ForcesResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const CoefficientsResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const StiffnessResult& result);
-[[nodiscard]] ROBOMILL_API std::string summary(const process::SmoothResult& result);
+[[nodiscard]] std::string summary(const std::vector<ToolResult>& results, const coupling::AssemblyFile& assembly,
+                                  const std::optional<LobesFile>& cut);
+[[nodiscard]] std::string summary(const ToolsResult& result);
+[[nodiscard]] std::string summary(const JointResult& result);
+[[nodiscard]] std::string summary(const LobesJobResult& result);
+[[nodiscard]] std::string summary(const ExplainResult& result);
+[[nodiscard]] std::string summary(const SimulateResult& result);
+[[nodiscard]] std::string summary(const process::ForcesResult& result);
+[[nodiscard]] std::string summary(const CoefficientsResult& result);
+[[nodiscard]] std::string summary(const StiffnessResult& result);
+[[nodiscard]] std::string summary(const process::SmoothResult& result);
 
 }  // namespace robomill::jobs

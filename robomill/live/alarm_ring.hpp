@@ -12,14 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// Keeps the last seconds of all channels and writes them as WAV when an alarm comes, on a thread of its own.
-class ROBOMILL_API AlarmRing {
+class AlarmRing {
  public:
   struct Options {
     std::filesystem::path folder;  ///< made where it is missing

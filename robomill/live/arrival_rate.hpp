@@ -4,15 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// The rate at which frames arrive, by the clock, against the one that they are said to be sampled at. Of a source that
 /// cannot wait, since one that can arrives as fast as it is processed.
-class ROBOMILL_API ArrivalRate {
+class ArrivalRate {
  public:
   using Clock = std::chrono::steady_clock;
 

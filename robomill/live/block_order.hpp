@@ -3,10 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
-
-// Method: robomill/live/README.md, "Method"
 
 namespace robomill::live {
 
@@ -24,7 +21,7 @@ struct OrderCounts {
 /// A missing block is waited for until more than `wait_blocks` later ones are there. A number far ahead (65,536 and
 /// more) is a restart of the sender, and so are numbers that run on from each other behind what was given: two of them
 /// further back than 64, or 32 within these, which copies sent again after a reconnection might be.
-class ROBOMILL_API BlockOrder {
+class BlockOrder {
  public:
   struct Given {
     monitor::StreamBlock block;

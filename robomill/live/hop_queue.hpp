@@ -8,10 +8,6 @@
 #include <mutex>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// Samples of one hop on their way from the input to the detector.
@@ -25,7 +21,7 @@ struct Hop {
 };
 
 /// A queue of bounded length between the thread that reads the input and the one that processes it.
-class ROBOMILL_API HopQueue {
+class HopQueue {
  public:
   explicit HopQueue(std::size_t capacity) : capacity_(capacity) {}
 

@@ -8,7 +8,6 @@
 #include <thread>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/live/arrival_rate.hpp"
 #include "robomill/live/block_order.hpp"
@@ -17,16 +16,14 @@
 #include "robomill/live/notices.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// Adds each hop that is left out to the notices and the metrics.
-[[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics);
+[[nodiscard]] std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics);
 
 /// Reads a recording or a pipe on a thread of its own; closes the queue at the end. Reports rows that cannot be read,
 /// raw samples that are misaligned, and of what cannot wait a rate that is off.
-class ROBOMILL_API SourceInput {
+class SourceInput {
  public:
   /// @param can_wait  whether the source may be kept waiting; else hops are left out
   SourceInput(std::unique_ptr<io::SampleSource> source, const monitor::MonitorFile& file, HopQueue& queue,
@@ -50,7 +47,7 @@ class ROBOMILL_API SourceInput {
 
 /// What a stream's messages go through on their way to the queue: rejected where they are no blocks of these channels
 /// at this rate, put in order, gaps filled, their rate compared with the clock. Used by one thread.
-class ROBOMILL_API StreamIntake {
+class StreamIntake {
  public:
   StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
   void message(std::span<const std::byte> payload);

@@ -6,10 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/live/hop_queue.hpp"
-
-// Method: robomill/live/README.md, "Method"
 
 namespace robomill::live {
 
@@ -17,7 +14,7 @@ namespace robomill::live {
 ///
 /// A source that can wait (a file) does so where the queue is full. From one that cannot, whole hops are left out then:
 /// `dropped` is reported, and the next hop says how many frames are missing before it.
-class ROBOMILL_API Intake {
+class Intake {
  public:
   /// @param dropped  called with 1 for every hop that is left out
   Intake(HopQueue& queue, std::size_t channels, std::size_t hop_frames, bool can_wait,

@@ -1,17 +1,14 @@
 #pragma once
 #include <chrono>
 
-#include "robomill/base/export.hpp"
 #include "robomill/live/hop_queue.hpp"
-
-// Method: robomill/live/README.md, "Method"
 
 namespace robomill::live {
 
 /// Whether decisions keep up with the samples. From the first hop that waited on, the clock's time is compared with the
 /// stream's, until the queue is empty: a source that is kept waiting, and runs faster than its samples were taken, is
 /// not late. Used by the thread that takes the hops.
-class ROBOMILL_API Load {
+class Load {
  public:
   using Clock = std::chrono::steady_clock;
   /// By how much decisions may be behind the samples.

@@ -2,16 +2,12 @@
 #include <cstdint>
 #include <mutex>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// Which of two threads published the state that holds: the session's own, or the watchdog while that one hangs.
 /// Neither waits for what the other publishes. So where both do at once nobody knows which came last, and the session
 /// has to publish its state again.
-class ROBOMILL_API PublishedState {
+class PublishedState {
  public:
   /// The session publishes a state, between begin() and end(). @param overloaded  BlindReason::overloaded
   void begin(bool overloaded);

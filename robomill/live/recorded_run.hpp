@@ -11,8 +11,6 @@
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/signal/bands.hpp"
 
-// Method: robomill/live/README.md, "Method"
-
 namespace robomill::live {
 
 /// The samples of one channel over time.

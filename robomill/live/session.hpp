@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 
-#include "robomill/base/export.hpp"
 #include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
 #include "robomill/live/hop_queue.hpp"
@@ -20,8 +19,6 @@
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/monitor.hpp"
-
-// Method: robomill/live/README.md, "Method"
 
 namespace robomill::live {
 
@@ -58,7 +55,7 @@ struct SessionOptions {
 };
 
 /// Processes a stream: takes hops out of a queue until that is closed, and emits decisions and events.
-class ROBOMILL_API Session {
+class Session {
  public:
   /// @throws InvalidInput if the options of the file are out of range or the recording's folder cannot be made
   Session(const monitor::MonitorFile& file, SessionOptions options, SessionOutputs outputs);

@@ -2,11 +2,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "robomill/base/export.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
-
-// Method: robomill/modal/README.md, "Weak modes (`weak_modes.hpp`)"
 
 namespace robomill::modal {
 
@@ -18,12 +15,12 @@ namespace robomill::modal {
 /// The marks that the modes had are overwritten.
 /// @param frfs  that the modes were fitted to
 /// @throws InvalidInput if the model or the set is not valid
-ROBOMILL_API void mark_weak_modes(ModalModel& model, const FrfSet& frfs);
+void mark_weak_modes(ModalModel& model, const FrfSet& frfs);
 
 /// The same of modes alone, whose own sum stands for H: the last of the three, and the second of modes that know their
 /// deviations. Modes without deviations are taken as facts.
 /// @throws InvalidInput if the model is not valid
-ROBOMILL_API void mark_weak_modes(ModalModel& model);
+void mark_weak_modes(ModalModel& model);
 
 /// A mode as a mass on a spring.
 struct ModalStiffness {
@@ -36,6 +33,6 @@ struct ModalStiffness {
 /// there.
 /// @param mode  of the model, from 0
 /// @throws InvalidInput if the model is not valid
-[[nodiscard]] ROBOMILL_API ModalStiffness modal_stiffness(const ModalModel& model, std::size_t mode);
+[[nodiscard]] ModalStiffness modal_stiffness(const ModalModel& model, std::size_t mode);
 
 }  // namespace robomill::modal

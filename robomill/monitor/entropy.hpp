@@ -4,11 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
-
-// Method: robomill/monitor/README.md, "energy-entropy (`published/`)"
 
 namespace robomill::monitor {
 
@@ -16,7 +13,7 @@ namespace robomill::monitor {
 /// - normalised: -Σ p_b ln p_b, in [0, ln bands], no unit, blind to the amplitude;
 /// - energy: -Σ E_b ln p_b = Σ E times the normalised one: in the unit of E, grows with the amplitude's square. Unlike
 ///   -Σ E_b ln E_b, it is never negative, and another unit of E only scales it.
-[[nodiscard]] ROBOMILL_API double energy_entropy(std::span<const double> energies, Entropy entropy) noexcept;
+[[nodiscard]] double energy_entropy(std::span<const double> energies, Entropy entropy) noexcept;
 
 /// The published feature [EnergyEntropyChatter] of one channel: the signal synchrosqueezed with a column a sample (Hann
 /// window of options.window_s, made even), `bands` equal bands reconstructed as signals, and the entropy of their
@@ -25,7 +22,7 @@ namespace robomill::monitor {
 ///
 /// The newest column stands half a window behind the newest sample. Nothing throws, and nothing is allocated, after
 /// construction.
-class ROBOMILL_API EnergyEntropy {
+class EnergyEntropy {
  public:
   /// Uses sample_rate_hz, window_s, bands and entropy.
   /// @throws InvalidInput naming an option that is out of range

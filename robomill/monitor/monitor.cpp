@@ -264,10 +264,6 @@ void ChatterMonitor::reset() noexcept {
   parts_->detector->reset();
 }
 
-const MonitorOptions& ChatterMonitor::options() const noexcept {
-  return parts_->options;
-}
-
 std::string_view to_string(Kind kind) {
   return name_in(kind_names, kind);
 }

@@ -151,7 +151,6 @@ class ROBOMILL_API ChatterMonitor {
   void set_spindle_speed(double rad_per_s) noexcept;
   /// As after construction; the last hint stays, and so does a spindle that stands still.
   void reset() noexcept;
-  [[nodiscard]] const MonitorOptions& options() const noexcept;
 
  private:
   struct Parts;

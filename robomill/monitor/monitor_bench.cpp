@@ -15,13 +15,14 @@ using namespace robomill::monitor;
 void hop(benchmark::State& state, Kind kind, int channels) {
   const testing::SyntheticCut cut{.channels = channels, .seconds = 10.0};
   const std::vector<float> samples = testing::vibration(cut);
-  ChatterMonitor monitor({.kind = kind,
-                          .sample_rate_hz = cut.sample_rate_hz,
-                          .channels = channels,
-                          .spindle_speed_rad_per_s = 510.0,
-                          .teeth = cut.teeth,
-                          .threshold = 1e9});
-  const std::size_t block = monitor.options().hop_samples() * static_cast<std::size_t>(channels);
+  const MonitorOptions options = {.kind = kind,
+                                  .sample_rate_hz = cut.sample_rate_hz,
+                                  .channels = channels,
+                                  .spindle_speed_rad_per_s = 510.0,
+                                  .teeth = cut.teeth,
+                                  .threshold = 1e9};
+  ChatterMonitor monitor(options);
+  const std::size_t block = options.hop_samples() * static_cast<std::size_t>(channels);
   std::vector<double> took_us;
   std::size_t at = 0;
   for (auto _ : state) {

@@ -62,8 +62,7 @@ MonitorOptions options_of(int channels, Kind kind = Kind::comb_cusum) {
 
 /// White noise of rms 1, of which spoil(channel, value) gives what the monitor is given.
 template <class Spoil>
-Decision push_hop(ChatterMonitor& monitor, Random& random, Spoil&& spoil) {
-  const int channels = monitor.options().channels;
+Decision push_hop(ChatterMonitor& monitor, int channels, Random& random, Spoil&& spoil) {
   std::vector<float> samples;
   for (std::size_t i = 0; i < hop_frames; ++i) {
     for (int c = 0; c < channels; ++c) samples.push_back(spoil(c, static_cast<float>(random.normal())));
@@ -94,11 +93,11 @@ TEST(ChatterMonitor, ATachometerIsNoVibration) {
     EXPECT_NE(decision.state, State::blind) << hop;
   }
   // Vibration of 1e-5 beside pulses of 5 V is not dead.
-  const Decision decision = push_hop(monitor, random, [](int c, float x) { return c == 1 ? 5.0F * x : 1e-5F * x; });
+  const Decision decision = push_hop(monitor, 2, random, [](int c, float x) { return c == 1 ? 5.0F * x : 1e-5F * x; });
   EXPECT_EQ(decision.faults & dead_channel, 0U);
   EXPECT_NE(decision.state, State::blind);
   // That it is not finite is a fault of the input, and leaves the vibration.
-  const Decision lost = push_hop(monitor, random, [](int c, float x) { return c == 1 ? nan : x; });
+  const Decision lost = push_hop(monitor, 2, random, [](int c, float x) { return c == 1 ? nan : x; });
   EXPECT_NE(lost.faults & not_finite, 0U);
   EXPECT_NE(lost.state, State::blind);
 }
@@ -107,7 +106,7 @@ TEST(ChatterMonitor, IsBlindWhereNoChannelHasASignal) {
   for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
     ChatterMonitor monitor(options_of(2, kind));
     Random random(1);
-    const auto push = [&](auto spoil) { return push_hop(monitor, random, spoil); };
+    const auto push = [&](auto spoil) { return push_hop(monitor, 2, random, spoil); };
     EXPECT_NE(push(as_it_is).state, State::blind);
     EXPECT_NE(push([](int c, float x) { return c == 0 ? nan : x; }).state, State::blind);
     for (int i = 0; i < 12; ++i) EXPECT_NE(push(as_it_is).state, State::blind);
@@ -137,8 +136,8 @@ TEST(ChatterMonitor, DistinguishesAGapFromAMissingSignal) {
     options.tachometer_channel = tachometer;
     ChatterMonitor monitor(options);
     Random random(1);
-    (void)push_hop(monitor, random, as_it_is);
-    return push_hop(monitor, random, spoil).reason;
+    (void)push_hop(monitor, channels, random, as_it_is);
+    return push_hop(monitor, channels, random, spoil).reason;
   };
   const auto lost = [](int, float) { return nan; };
   EXPECT_EQ(reason_of(1, -1, lost), BlindReason::gap);
@@ -158,15 +157,16 @@ TEST(ChatterMonitor, IsBlindWhereEverySignalStaysClipped) {
   Random random(1);
   const auto both = [](int, float x) { return std::clamp(x, -1.0F, 1.0F); };
   const auto one = [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.1F * x; };
-  for (int i = 0; i < 20; ++i) EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
-  for (int i = 0; i < 3; ++i) EXPECT_NE(push_hop(monitor, random, both).state, State::blind);
-  EXPECT_EQ(push_hop(monitor, random, both).reason, BlindReason::clipped);
+  for (int i = 0; i < 20; ++i) EXPECT_NE(push_hop(monitor, 2, random, one).state, State::blind);
+  for (int i = 0; i < 3; ++i) EXPECT_NE(push_hop(monitor, 2, random, both).state, State::blind);
+  EXPECT_EQ(push_hop(monitor, 2, random, both).reason, BlindReason::clipped);
   // A channel without a signal cannot speak for the clipped one.
-  EXPECT_EQ(push_hop(monitor, random, [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.0F; }).reason,
-            BlindReason::clipped);
+  EXPECT_EQ(
+      push_hop(monitor, 2, random, [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.0F; }).reason,
+      BlindReason::clipped);
   // Its run of zeros reaches into the next hop, and then it is left out for 0.3 s.
-  for (int i = 0; i < 12; ++i) EXPECT_EQ(push_hop(monitor, random, one).reason, BlindReason::clipped);
-  EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(push_hop(monitor, 2, random, one).reason, BlindReason::clipped);
+  EXPECT_NE(push_hop(monitor, 2, random, one).state, State::blind);
 }
 
 // A spindle at rest before a 16-bit converter: hum of three counts, whose tops are flat.
@@ -179,7 +179,7 @@ TEST(ChatterMonitor, StepsOfAConverterAreNotClipped) {
     Decision decision;
     for (std::size_t hop = 0; hop < 20; ++hop) {
       std::size_t i = hop * hop_frames;
-      decision = push_hop(monitor, random, [&](int, float) {
+      decision = push_hop(monitor, 1, random, [&](int, float) {
         return static_cast<float>(std::round(3.0 * std::sin(0.06 * static_cast<double>(i++))));
       });
     }
@@ -194,26 +194,26 @@ TEST(ChatterMonitor, IsBlindWhileTheSpindleStandsStill) {
     ChatterMonitor monitor(options);
     Random random(1);
     monitor.set_spindle_speed(2.0);  // 19 rpm
-    for (int i = 0; i < 20; ++i) EXPECT_EQ(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill) << i;
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(push_hop(monitor, 1, random, as_it_is).reason, BlindReason::standstill) << i;
     // What is wrong with the input stands before it.
-    EXPECT_EQ(push_hop(monitor, random, [](int, float) { return nan; }).reason, BlindReason::gap);
+    EXPECT_EQ(push_hop(monitor, 1, random, [](int, float) { return nan; }).reason, BlindReason::gap);
     monitor.reset();
-    EXPECT_EQ(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+    EXPECT_EQ(push_hop(monitor, 1, random, as_it_is).reason, BlindReason::standstill);
     monitor.set_spindle_speed(300.0);
-    EXPECT_NE(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+    EXPECT_NE(push_hop(monitor, 1, random, as_it_is).reason, BlindReason::standstill);
     monitor.set_spindle_speed(0.0);
     monitor.set_spindle_speed(std::numeric_limits<double>::quiet_NaN());  // not known is not still
-    EXPECT_NE(push_hop(monitor, random, as_it_is).reason, BlindReason::standstill);
+    EXPECT_NE(push_hop(monitor, 1, random, as_it_is).reason, BlindReason::standstill);
   }
 }
 
 TEST(ChatterMonitor, ForgetsOnResetWhyItWasBlind) {
   ChatterMonitor monitor(options_of(1));
   Random random(1);
-  (void)push_hop(monitor, random, as_it_is);
-  EXPECT_EQ(push_hop(monitor, random, [](int, float) { return nan; }).state, State::blind);
+  (void)push_hop(monitor, 1, random, as_it_is);
+  EXPECT_EQ(push_hop(monitor, 1, random, [](int, float) { return nan; }).state, State::blind);
   monitor.reset();
-  EXPECT_NE(push_hop(monitor, random, as_it_is).state, State::blind);
+  EXPECT_NE(push_hop(monitor, 1, random, as_it_is).state, State::blind);
 }
 
 TEST(ChatterMonitor, LivesOnWithBadInput) {

@@ -2,10 +2,6 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/page/README.md, "Method"
-
 /// The same page for a server: what it sends once, and what the page then fetches.
 namespace robomill::page {
 
@@ -14,10 +10,10 @@ struct AppFiles {
   std::string_view script;       ///< empty in a build without npm
   std::string_view path_script;  ///< draws a path in three dimensions; empty as well
 };
-[[nodiscard]] ROBOMILL_API AppFiles app_files();
+[[nodiscard]] AppFiles app_files();
 
 /// The page of a folder: it loads page.css and page.js, and has {"token", "version", "folder"} as JSON in
 /// #serve-config.
-[[nodiscard]] ROBOMILL_API std::string app_html(const std::string& folder, const std::string& write_token);
+[[nodiscard]] std::string app_html(const std::string& folder, const std::string& write_token);
 
 }  // namespace robomill::page

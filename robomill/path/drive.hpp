@@ -5,10 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/path/sample.hpp"
-
-// Method: robomill/path/README.md, "Method"
 
 namespace robomill::path {
 
@@ -17,7 +14,7 @@ namespace robomill::path {
 ///     y'' + 2 ζ ω y' + ω² y = ω² r + f 2 ζ ω r'
 ///     J z'' + c (z' − y') + k (z − y) = 0
 /// The load does not push the motor back: the servo is stiff against it.
-struct ROBOMILL_API Drive {
+struct Drive {
   double natural_frequency_hz = 0.0;   ///< ω/2π > 0; the bandwidth where ζ = 0.707; required
   double damping_ratio = 0.707;        ///< ζ > 0
   double velocity_feed_forward = 0.0;  ///< f in [0, 1]; 1: no error at constant speed
@@ -39,7 +36,7 @@ struct TrackingError {
 
 /// What drives make of a trajectory, sample by sample; the command runs straight between samples (first-order hold),
 /// which is solved exactly. At rest on the first sample.
-class ROBOMILL_API DriveModel {
+class DriveModel {
  public:
   /// Takes the errors r − z of all joints at a time; length n.
   using Series = std::function<void(double time_s, std::span<const double> error)>;

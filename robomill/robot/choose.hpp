@@ -6,17 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 
-// Method: robomill/robot/README.md, "Inverse kinematics in closed form"
-
 namespace robomill::robot {
 
-struct ROBOMILL_API ChooseOptions {
+struct ChooseOptions {
   SingularityOptions singularity = {};                ///< of the Jacobian at `point_m`
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< in the flange frame: the tool's tip
   Position6 weight = Position6::Ones();               ///< >= 0; of each joint's travel [1/rad]
@@ -39,8 +36,8 @@ struct Choice {
 /// Of all solutions and the turns by ±2π of each joint that lie within the joint limits, the one nearest to the
 /// previous position: the least Σ (weight (q − previous))². Allocates nothing; options and arm are not checked.
 /// @param arm  the one that the solutions are of; six joints
-[[nodiscard]] ROBOMILL_API Choice choose(const Arm& arm, const InverseSolutions& solutions, const Position6& previous,
-                                         const ChooseOptions& options = {}) noexcept;
+[[nodiscard]] Choice choose(const Arm& arm, const InverseSolutions& solutions, const Position6& previous,
+                            const ChooseOptions& options = {}) noexcept;
 
 /// A way through poses.
 struct Followed {
@@ -56,12 +53,11 @@ struct Followed {
 /// @param flanges  in B
 /// @param start    position before the first pose
 /// @throws InvalidInput if an option is invalid, there is no pose, or the arm has not six joints
-[[nodiscard]] ROBOMILL_API Followed follow(const Arm& arm, const SphericalWristInverse& inverse,
-                                           const std::vector<Eigen::Isometry3d>& flanges,
-                                           const std::optional<Position6>& start = {},
-                                           const ChooseOptions& options = {});
+[[nodiscard]] Followed follow(const Arm& arm, const SphericalWristInverse& inverse,
+                              const std::vector<Eigen::Isometry3d>& flanges, const std::optional<Position6>& start = {},
+                              const ChooseOptions& options = {});
 
-struct ROBOMILL_API NearOptions {
+struct NearOptions {
   double tolerance_m = 1e-12;    ///< > 0; converged where error_m <= this …
   double tolerance_rad = 1e-12;  ///< > 0; … and error_rad <= this
   int max_iterations = 100;      ///< >= 1; steps, those that were taken back among them
@@ -82,8 +78,7 @@ struct NearResult {
 /// @param flange  in B
 /// @param seed    length n
 /// @throws InvalidInput if an option is invalid, the seed has another length, or a number is not finite
-[[nodiscard]] ROBOMILL_API NearResult solve_near(const Arm& arm, const Eigen::Isometry3d& flange,
-                                                 const Eigen::Ref<const Eigen::VectorXd>& seed,
-                                                 const NearOptions& options = {});
+[[nodiscard]] NearResult solve_near(const Arm& arm, const Eigen::Isometry3d& flange,
+                                    const Eigen::Ref<const Eigen::VectorXd>& seed, const NearOptions& options = {});
 
 }  // namespace robomill::robot

@@ -19,21 +19,17 @@ namespace {
 using Complex = std::complex<double>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// M and its Cholesky factor.
-struct Mass {
-  Eigen::MatrixXd matrix;
-  Eigen::LLT<Eigen::MatrixXd> factor;
-};
-Mass factored_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
-  Mass out{.matrix = mass_matrix(arm, position), .factor = {}};
+/// Cholesky factor of M.
+Eigen::LLT<Eigen::MatrixXd> mass_factor(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
+  const Eigen::MatrixXd mass = mass_matrix(arm, position);
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
-    if (out.matrix(i, i) > 0.0) continue;
+    if (mass(i, i) > 0.0) continue;
     throw InvalidInput("joints[" + std::to_string(i + 1) + "].link.mass_kg", 0.0, "kg",
                        "must be > 0: the joint moves no mass",
                        "Links' masses, centres and inertia, or the drives' rotor inertia, are needed");
   }
-  out.factor.compute(out.matrix);
-  if (out.factor.info() != Eigen::Success) {
+  Eigen::LLT<Eigen::MatrixXd> out(mass);
+  if (out.info() != Eigen::Success) {
     throw InvalidInput("joints", "must move masses that make the mass matrix positive definite",
                        "The wrist's links need an inertia, or its drives a rotor inertia");
   }
@@ -124,7 +120,7 @@ Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::Vector
 ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
                      const Eigen::Vector3d& point_m) {
   static_cast<void>(stiffness(arm, position, point_m));  // checks what is given
-  const Mass mass = factored_mass(arm, position);
+  const Eigen::LLT<Eigen::MatrixXd> factor = mass_factor(arm, position);
   const Jacobian jac = jacobian(arm, position, point_m);
   Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(arm.size(), arm.size()), damping = joint;
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
@@ -132,7 +128,7 @@ ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& po
     damping(i, i) = arm.joints[static_cast<std::size_t>(i)].damping;
   }
   // In y = Lᵀ q with M = L Lᵀ.
-  const auto lower = mass.factor.matrixL();
+  const auto lower = factor.matrixL();
   const auto normal = [&](const Eigen::MatrixXd& matrix) {
     const Eigen::MatrixXd half = lower.solve(matrix);
     return Eigen::MatrixXd(lower.solve(half.transpose()).transpose());

@@ -2,10 +2,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/signal/README.md, "Method"
-
 namespace robomill::signal {
 
 /// One-sided amplitude spectrum: a sine of amplitude A at one of the lines shows A there.
@@ -18,8 +14,7 @@ struct Spectrum {
 /// line; the line at zero shows its size.
 /// @param x  length n >= 4, finite
 /// @throws InvalidInput if x is shorter, not finite, or the rate is not > 0
-[[nodiscard]] ROBOMILL_API Spectrum amplitude_spectrum(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                                       double sample_rate_hz);
+[[nodiscard]] Spectrum amplitude_spectrum(const Eigen::Ref<const Eigen::VectorXd>& x, double sample_rate_hz);
 
 struct SpectralPeak {
   double frequency_hz = 0.0;
@@ -33,14 +28,13 @@ struct PeakOptions {
   double relative_height = 0.05;   ///< in [0, 1]; a line counts where A >= this · the highest A in the band
   double min_separation_hz = 0.0;  ///< >= 0; of two peaks with |Δf| < this only the higher counts
   /// @throws InvalidInput naming the field
-  ROBOMILL_API void validate() const;
+  void validate() const;
 };
 
 /// Peaks of an amplitude_spectrum, by falling amplitude. Frequency and amplitude are interpolated between the highest
 /// line and the higher of its neighbours, exact for a lone sine under the Hann window: δ = (2α - 1)/(α + 1), α =
 /// A_{k±1}/A_k, f = (k ± δ) Δf, A = A_k (1 - δ²) πδ / sin πδ. [Grandke1983]
 /// @throws InvalidInput if the lengths differ or there are fewer than three lines
-[[nodiscard]] ROBOMILL_API std::vector<SpectralPeak> find_peaks(const Spectrum& spectrum,
-                                                                const PeakOptions& options = {});
+[[nodiscard]] std::vector<SpectralPeak> find_peaks(const Spectrum& spectrum, const PeakOptions& options = {});
 
 }  // namespace robomill::signal

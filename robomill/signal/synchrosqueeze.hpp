@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "robomill/base/export.hpp"
 #include "robomill/signal/window_shape.hpp"
 
 /// Synchrosqueezed short-time Fourier transform [ThakurWu2011], [OberlinMeignenPerrier2014].
@@ -19,7 +18,6 @@
 /// that is not above the threshold, or whose ω̂ is not in 0 … f_s/2, stays at its own, so that nothing is lost:
 ///   x_m = Re Σ_k squeezed(m, k) / (N g(0)),
 /// exactly, and a sum over part of the lines is that band's share of the signal.
-// Method: robomill/signal/README.md, "Method"
 namespace robomill::signal {
 
 struct SynchrosqueezeOptions {
@@ -29,13 +27,13 @@ struct SynchrosqueezeOptions {
   WindowKind window = WindowKind::hann;
   double threshold = 0.0;  ///< a coefficient of |V_g| <= threshold Σg/2 stays: of a sine of that amplitude. >= 0
   /// @throws InvalidInput naming the field
-  ROBOMILL_API void validate() const;
+  void validate() const;
   [[nodiscard]] Eigen::Index lines() const { return window_length / 2 + 1; }
 };
 
 /// `count` bands of one width from 0 to half the rate: their count + 1 edges [Hz].
 /// @throws InvalidInput if count < 1 or the rate is not > 0
-[[nodiscard]] ROBOMILL_API Eigen::VectorXd equal_bands(double sample_rate_hz, Eigen::Index count);
+[[nodiscard]] Eigen::VectorXd equal_bands(double sample_rate_hz, Eigen::Index count);
 
 struct Synchrosqueezed {
   Eigen::VectorXd frequency_hz;  ///< of the lines, N/2 + 1
@@ -53,16 +51,16 @@ enum class Keep {
 /// The whole of a record, on the threads of parallel_for; columns at 0, hop, 2 hop … below its length.
 /// @param x  length >= 1, finite
 /// @throws InvalidInput if x or an option makes no sense
-[[nodiscard]] ROBOMILL_API Synchrosqueezed synchrosqueeze(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                                          const SynchrosqueezeOptions& options, Keep keep = Keep::both);
+[[nodiscard]] Synchrosqueezed synchrosqueeze(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                             const SynchrosqueezeOptions& options, Keep keep = Keep::both);
 
 /// The bands' shares of x at the columns, bands × columns: the sum over the lines with edges_hz(b) <= f < edges_hz(b +
 /// 1); the last band has its upper edge too. Bands that cover 0 … f_s/2 sum to x.
 /// @param edges_hz  length bands + 1, rising, 1 to 255 bands
 /// @throws InvalidInput if x, an option or the edges make no sense
-[[nodiscard]] ROBOMILL_API Eigen::MatrixXd band_signals(const Eigen::Ref<const Eigen::VectorXd>& x,
-                                                        const SynchrosqueezeOptions& options,
-                                                        const Eigen::Ref<const Eigen::VectorXd>& edges_hz);
+[[nodiscard]] Eigen::MatrixXd band_signals(const Eigen::Ref<const Eigen::VectorXd>& x,
+                                           const SynchrosqueezeOptions& options,
+                                           const Eigen::Ref<const Eigen::VectorXd>& edges_hz);
 
 class SynchrosqueezeEngine;
 
@@ -70,7 +68,7 @@ class SynchrosqueezeEngine;
 /// soon as its last sample, N/2 - 1 after its centre, is there. Memory near 100 N bytes. Everything but construction is
 /// noexcept and allocates nothing; a sample that is not finite counts as zero. How the samples are split into calls
 /// changes no bit.
-class ROBOMILL_API SynchrosqueezeStream {
+class SynchrosqueezeStream {
  public:
   /// @param edges_hz  of the bands, as band_signals; empty: none
   /// @throws InvalidInput if an option or the edges make no sense

@@ -2,10 +2,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/signal/README.md, "Method"
-
 namespace robomill::signal {
 
 /// A window's shape: coefficients c_j of cosine sums, half width of the main lobe [lines], highest side lobe [dB].
@@ -15,14 +11,14 @@ enum class WindowKind {
 };
 
 /// c_j of g(d) = Σ_j c_j cos(2πjd/n) about its centre, over n samples d = -n/2 … n/2 - 1, n even; g(0) = Σ c_j = 1.
-[[nodiscard]] ROBOMILL_API std::vector<double> window_cosines(WindowKind kind);
+[[nodiscard]] std::vector<double> window_cosines(WindowKind kind);
 
 /// g(d), d = -n/2 … n/2 - 1.
 /// @throws InvalidInput if n is odd or below 2
-[[nodiscard]] ROBOMILL_API Eigen::VectorXd window_samples(WindowKind kind, Eigen::Index n);
+[[nodiscard]] Eigen::VectorXd window_samples(WindowKind kind, Eigen::Index n);
 
 /// dg/dt [1/s] at the same places, in closed form.
 /// @throws InvalidInput if n is odd or below 2, or the rate is not > 0
-[[nodiscard]] ROBOMILL_API Eigen::VectorXd window_derivative(WindowKind kind, Eigen::Index n, double sample_rate_hz);
+[[nodiscard]] Eigen::VectorXd window_derivative(WindowKind kind, Eigen::Index n, double sample_rate_hz);
 
 }  // namespace robomill::signal

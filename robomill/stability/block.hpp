@@ -1,16 +1,14 @@
 #pragma once
 #include <array>
 
-#include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/regime.hpp"
 #include "robomill/stability/sweep.hpp"
 
-// Method: robomill/stability/README.md, "One block (`block.hpp`)"
 namespace robomill::stability {
 
 /// What is asked of one block of a program.
-struct ROBOMILL_API BlockOptions {
+struct BlockOptions {
   double tolerance = 1e-4;  ///< as of LobesOptions: of the spectral radii, and of |μ| = 1 at limit and margin
   /// Where the limit is looked for [m], increasing; {0, 0}: from a sixteenth of the depth to eight times it; of an
   /// analytic cut to half the height of the edges at most.
@@ -42,7 +40,7 @@ struct BlockStability {
 /// the radius has a peak near 1 between two of them; what is narrower than a step and stays below it is not seen.
 /// @param axial_depth_m  a [m], > 0; of a given engagement its engaged_height_m
 /// @throws InvalidInput as evaluate_point, or if an option is out of range
-[[nodiscard]] ROBOMILL_API BlockStability block_stability(const LobesProblem& problem, double spindle_speed_rad_per_s,
-                                                          double axial_depth_m, const BlockOptions& options = {});
+[[nodiscard]] BlockStability block_stability(const LobesProblem& problem, double spindle_speed_rad_per_s,
+                                             double axial_depth_m, const BlockOptions& options = {});
 
 }  // namespace robomill::stability

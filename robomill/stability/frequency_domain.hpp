@@ -1,17 +1,14 @@
 #pragma once
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/stability/frequency_response.hpp"
 #include "robomill/stability/lobes.hpp"
 
-// Method: robomill/stability/README.md, "In the frequency domain (`frequency_domain.hpp`, `frequency_response.hpp`)"
-
 namespace robomill::stability {
 
-struct ROBOMILL_API FrequencyOptions {
+struct FrequencyOptions {
   double largest_depth_m = 0.0;  ///< greatest axial depth to look at [m], > 0; required
   /// In [1e-12, 0.1]. Multi-frequency: polynomials and harmonics grow until |Δlimit| <= tolerance · limit.
   double tolerance = 1e-7;
@@ -50,24 +47,26 @@ struct FrequencyLimit {
 /// with all four receptances. Solved at each given spindle speed for the frequencies ω at which a is real. Unequal
 /// pitch keeps its delays; helix has no influence on the mean. Source: [Altintas1995].
 /// @throws InvalidInput if an input is out of range, or for runout, speed variation, unequal helix
-[[nodiscard]] ROBOMILL_API std::vector<FrequencyLimit> zeroth_order_limits(
-    const cutting::Milling& milling, const FrequencyResponse& response,
-    const std::vector<double>& spindle_speeds_rad_per_s, const FrequencyOptions& options,
-    Progress& progress = Progress::none());
+[[nodiscard]] std::vector<FrequencyLimit> zeroth_order_limits(const cutting::Milling& milling,
+                                                              const FrequencyResponse& response,
+                                                              const std::vector<double>& spindle_speeds_rad_per_s,
+                                                              const FrequencyOptions& options,
+                                                              Progress& progress = Progress::none());
 
 /// Multi-frequency solution: Hill's determinant of all harmonics of the cutting stiffness and of the receptances at
 /// ω + n ω_P. Converges to the exact limit. Helix, unequal pitch, process damping included. The structure without a cut
 /// is taken for stable. Method and accuracy: robomill/stability/README.md. Source: [Merdol2004], [Budak1998].
 /// @throws InvalidInput if an input is out of range, or for runout, speed variation, unequal helix
-[[nodiscard]] ROBOMILL_API std::vector<FrequencyLimit> multi_frequency_limits(
-    const cutting::Milling& milling, const FrequencyResponse& response,
-    const std::vector<double>& spindle_speeds_rad_per_s, const FrequencyOptions& options,
-    Progress& progress = Progress::none());
+[[nodiscard]] std::vector<FrequencyLimit> multi_frequency_limits(const cutting::Milling& milling,
+                                                                 const FrequencyResponse& response,
+                                                                 const std::vector<double>& spindle_speeds_rad_per_s,
+                                                                 const FrequencyOptions& options,
+                                                                 Progress& progress = Progress::none());
 
 /// @throws InvalidInput naming the band that is missing, if measured FRFs still rise towards an end of their band, or
 ///     if what they leave out moves a limit by more than `largest_ratio` of itself:
 ///     FrequencyLimit::uncovered_ratio > largest_ratio
-ROBOMILL_API void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
-                                   double largest_ratio = 0.2);
+void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
+                      double largest_ratio = 0.2);
 
 }  // namespace robomill::stability

@@ -1,10 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
 
-// Method: robomill/stability/README.md, "Sensitivity of a limit (`sensitivity.hpp`)"
 namespace robomill::stability {
 
 /// How the spectral radius at a point answers small relative changes of what the structure is made of.
@@ -23,8 +21,8 @@ struct LimitSensitivity {
 /// over the modes, else from differences of radii.
 /// @param tolerance  as LobesOptions::tolerance
 /// @throws InvalidInput as evaluate_point
-[[nodiscard]] ROBOMILL_API LimitSensitivity limit_sensitivity(const LobesProblem& problem, const OperatingPoint& point,
-                                                              double tolerance = 1e-6);
+[[nodiscard]] LimitSensitivity limit_sensitivity(const LobesProblem& problem, const OperatingPoint& point,
+                                                 double tolerance = 1e-6);
 
 /// Depths below which 5, 50 and 95 % of the limits lie [m].
 struct LimitQuantiles {
@@ -36,7 +34,7 @@ struct LimitQuantiles {
 /// ∂ ln|μ|/∂ ln a; the modes' own frequency_std_hz, damping_ratio_std and residue_std_ratio are independent and normal,
 /// those that are not known count as 0. Where the radius does not grow with the depth all three are the limit itself.
 /// @param limit_m  a [m], where |μ| = 1
-[[nodiscard]] ROBOMILL_API LimitQuantiles limit_quantiles(const LobesProblem& problem,
-                                                          const LimitSensitivity& sensitivity, double limit_m);
+[[nodiscard]] LimitQuantiles limit_quantiles(const LobesProblem& problem, const LimitSensitivity& sensitivity,
+                                             double limit_m);
 
 }  // namespace robomill::stability

@@ -19,7 +19,7 @@ struct Targets {
                               Progress& progress);
 
 /// At which poses of a program propose() looks before it judges: up to 20 that failed, then up to 60 all along it.
-[[nodiscard]] ROBOMILL_API std::vector<std::size_t> poses_to_look_at(const Placement& failed, std::size_t poses);
+[[nodiscard]] std::vector<std::size_t> poses_to_look_at(const Placement& failed, std::size_t poses);
 
 /// Other poses of the workpiece, near the one that failed, that judge() finds to work; the smallest change first.
 /// @param most  at most so many, each in a direction of its own

@@ -3,10 +3,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/cell/README.md, "Arms by name (`files/known_arms.hpp`)"
-
 namespace robomill::cell {
 
 /// An arm that a cell takes by its name, robot.model.
@@ -17,13 +13,13 @@ struct KnownArm {
 
 /// The maker of an arm by its name, "kuka-kr210-r2700", "kuka_kr16_2", "irb4600", as path::TrajectoryInfo has it;
 /// empty: not known.
-[[nodiscard]] ROBOMILL_API std::string maker_of(std::string_view name);
+[[nodiscard]] std::string maker_of(std::string_view name);
 
 /// All of them, by their names.
-[[nodiscard]] ROBOMILL_API std::vector<KnownArm> known_arms();
+[[nodiscard]] std::vector<KnownArm> known_arms();
 
 /// A whole cell.toml with the arm of this name, data/cells/NAME.toml as it was when the library was built; empty where
 /// there is none.
-[[nodiscard]] ROBOMILL_API std::string_view known_arm_cell(std::string_view name);
+[[nodiscard]] std::string_view known_arm_cell(std::string_view name);
 
 }  // namespace robomill::cell

@@ -3,19 +3,16 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/coupling/joint_fit.hpp"
-
-// Method: robomill/coupling/README.md, "Files"
 
 namespace robomill::coupling {
 
 /// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF shows of it. A
 /// deviation that is infinite is null.
-[[nodiscard]] ROBOMILL_API std::string joint_json(const JointFitResult& result);
+[[nodiscard]] std::string joint_json(const JointFitResult& result);
 
 /// A row for each of the four: value, standard deviation (empty where it is infinite), whether it is identifiable.
-[[nodiscard]] ROBOMILL_API std::string joint_csv(const JointFitResult& result);
+[[nodiscard]] std::string joint_csv(const JointFitResult& result);
 
 /// What joint.json says of a joint.
 struct JointFile {
@@ -28,6 +25,6 @@ struct JointFile {
 /// All else in it is left alone.
 /// @throws InvalidInput with the file and "joint.rotational_stiffness_n_m_per_rad" if a value is missing, no finite
 ///     number or out of its range
-[[nodiscard]] ROBOMILL_API JointFile read_joint_json(const std::filesystem::path& path);
+[[nodiscard]] JointFile read_joint_json(const std::filesystem::path& path);
 
 }  // namespace robomill::coupling

@@ -3,12 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/cutting/force.hpp"
 #include "robomill/cutting/material.hpp"
 #include "robomill/io/toml_source.hpp"
-
-// Method: robomill/cutting/README.md, "Files"
 
 namespace robomill::io {
 class TomlFile;
@@ -26,7 +23,7 @@ struct CutAtHand {
 };
 
 /// What [coefficients] says, and where it names a material what that brings along.
-struct ROBOMILL_API CoefficientTable {
+struct CoefficientTable {
   MillingCoefficients coefficients = {};
   std::optional<PublishedCoefficients> published = {};  ///< the set that was taken
   /// How far all of them together may be off, as a share: that of the set's tests, else that between the material's
@@ -49,17 +46,16 @@ struct ROBOMILL_API CoefficientTable {
 /// coefficient; or rake_deg, chip_thickness_mm and the helix, which is helix_deg or the tool's, for its orthogonal
 /// tests. edge_per says what edge forces are per: "width" or "edge-length".
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut = {});
+[[nodiscard]] CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut = {});
 
 /// Whether `coefficients` is a name, and not a table.
-[[nodiscard]] ROBOMILL_API bool names_a_material(const io::TomlFile& file);
+[[nodiscard]] bool names_a_material(const io::TomlFile& file);
 
 /// coefficients.toml. @param notes  gains sentences for the user
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const io::TomlSource& source,
-                                                                 std::vector<std::string>& notes);
+[[nodiscard]] MillingCoefficients read_coefficients(const io::TomlSource& source, std::vector<std::string>& notes);
 
 /// The table as text, for coefficients.toml.
-[[nodiscard]] ROBOMILL_API std::string coefficients_toml(const MillingCoefficients& coefficients);
+[[nodiscard]] std::string coefficients_toml(const MillingCoefficients& coefficients);
 
 }  // namespace robomill::cutting

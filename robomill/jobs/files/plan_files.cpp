@@ -6,6 +6,8 @@
 
 #include "robomill/io/folder_change.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/monitor_plan.hpp"
+#include "robomill/jobs/pages.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::jobs {

@@ -4,6 +4,7 @@
 
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/page/report.hpp"
 
 namespace robomill::jobs {
 

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/modal/hits.hpp"
 
@@ -34,9 +33,9 @@ struct HitGuess {
   std::string direction_from = {};  ///< what that is guessed from; empty: nothing says it
 
   /// Places in `columns` of what has that role.
-  [[nodiscard]] ROBOMILL_API std::vector<std::size_t> with(ColumnGuess::Role role) const;
+  [[nodiscard]] std::vector<std::size_t> with(ColumnGuess::Role role) const;
   /// Whether there are a force and a response.
-  [[nodiscard]] ROBOMILL_API bool is_hit() const;
+  [[nodiscard]] bool is_hit() const;
 };
 
 /// Guesses by the names of columns ("force_n", "Hammer (N)", "acc x [g]"), their units, the name of the file
@@ -44,6 +43,6 @@ struct HitGuess {
 /// hammer's force has the sharpest peak. A force is a hammer's where it is one short pulse, bounces aside; that of a
 /// cut is not. Of responses of several kinds or units, or of one direction twice, the first counts. Of records of
 /// anything else it finds no hit.
-[[nodiscard]] ROBOMILL_API HitGuess guess_hit(const io::Record& record);
+[[nodiscard]] HitGuess guess_hit(const io::Record& record);
 
 }  // namespace robomill::modal

@@ -2,11 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/robot/arm.hpp"
-
-// Method: robomill/modal/README.md, "Modes by inverse distance (`posture/inverse_distance.hpp`)"
 
 namespace robomill::modal {
 
@@ -30,7 +27,7 @@ enum class ResidueAxes { base, flange };
 /// @param joints  length n
 /// @throws InvalidInput naming "measured[k].member" (k from 1): none at all, a posture of another length or not finite,
 ///     a model that is not valid or not of the tip; "joints"
-[[nodiscard]] ROBOMILL_API ModalModel inverse_distance(const std::vector<PostureModes>& measured, const robot::Arm& arm,
-                                                       const Eigen::VectorXd& joints, ResidueAxes axes);
+[[nodiscard]] ModalModel inverse_distance(const std::vector<PostureModes>& measured, const robot::Arm& arm,
+                                          const Eigen::VectorXd& joints, ResidueAxes axes);
 
 }  // namespace robomill::modal

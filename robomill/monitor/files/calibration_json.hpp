@@ -1,15 +1,12 @@
 #pragma once
 #include <string>
 
-#include "robomill/base/export.hpp"
 #include "robomill/monitor/calibration.hpp"
-
-// Method: robomill/monitor/README.md, "Files"
 
 namespace robomill::monitor {
 
 /// What a calibration found as JSON text: its status and, where it is not "found", the reason; threshold and direction,
 /// both halves with their ROC curves, every recording.
-[[nodiscard]] ROBOMILL_API std::string calibration_json(const Calibration& calibration);
+[[nodiscard]] std::string calibration_json(const Calibration& calibration);
 
 }  // namespace robomill::monitor

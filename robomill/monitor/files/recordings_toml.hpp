@@ -3,13 +3,10 @@
 #include <limits>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/io/toml_source.hpp"
 #include "robomill/monitor/calibration.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
-
-// Method: robomill/monitor/README.md, "Files"
 
 namespace robomill::monitor {
 
@@ -29,13 +26,12 @@ struct RecordingsFile {
 };
 
 /// @throws InvalidInput with file, line, key and value, also where no recording chatters or none is stable
-[[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const io::TomlSource& source);
+[[nodiscard]] RecordingsFile read_recordings(const io::TomlSource& source);
 
 /// The samples of the labelled recordings, in their order. All run at one rate: that of recordings.toml, else the first
 /// one's, which is then the file's. What is remarkable of one, such as that it was cut, becomes a note of the file.
 /// @throws InvalidInput as io::open_samples and SampleSource::next
 /// @throws Interrupted when progress asks to stop
-[[nodiscard]] ROBOMILL_API std::vector<Recording> read_samples(RecordingsFile& file,
-                                                               Progress& progress = Progress::none());
+[[nodiscard]] std::vector<Recording> read_samples(RecordingsFile& file, Progress& progress = Progress::none());
 
 }  // namespace robomill::monitor

@@ -7,10 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/export.hpp"
-
-// Method: robomill/monitor/README.md, "Files"
-
 namespace robomill::monitor {
 
 /// Samples as a sensor's gateway publishes them: one MQTT message.
@@ -34,13 +30,13 @@ inline constexpr std::size_t stream_header_bytes = 40;
 inline constexpr std::size_t max_stream_block_bytes = std::size_t{1} << 20;
 
 /// The message of a block. @throws InvalidInput if it holds no whole number of frames, none or too many
-[[nodiscard]] ROBOMILL_API std::string encode_stream_block(const StreamBlock& block);
+[[nodiscard]] std::string encode_stream_block(const StreamBlock& block);
 
 /// A message read; what is wrong with it where it is none. Any bytes may come.
 struct DecodedBlock {
   std::optional<StreamBlock> block;
   const char* rejection = "";  ///< "is cut off", …
 };
-[[nodiscard]] ROBOMILL_API DecodedBlock decode_stream_block(std::span<const std::byte> message);
+[[nodiscard]] DecodedBlock decode_stream_block(std::span<const std::byte> message);
 
 }  // namespace robomill::monitor

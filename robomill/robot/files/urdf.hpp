@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 
 namespace robomill::robot {
@@ -29,8 +28,7 @@ struct UrdfArm {
 /// @throws InvalidInput naming the link or joint if the text is no URDF, a link is missing or not on the way to the
 /// tip,
 ///     a joint mimics another, is floating or planar, has no limits, or is invalid for robot::Arm
-[[nodiscard]] ROBOMILL_API UrdfArm parse_urdf(std::string_view content, const std::string& where,
-                                              const UrdfReading& reading);
-[[nodiscard]] ROBOMILL_API UrdfArm read_urdf(const std::filesystem::path& path, const UrdfReading& reading);
+[[nodiscard]] UrdfArm parse_urdf(std::string_view content, const std::string& where, const UrdfReading& reading);
+[[nodiscard]] UrdfArm read_urdf(const std::filesystem::path& path, const UrdfReading& reading);
 
 }  // namespace robomill::robot
