@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/usual_ranges.hpp"

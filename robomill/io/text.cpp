@@ -39,20 +39,6 @@ std::optional<double> from_chars(std::string_view text) {
   return read.ec == std::errc::result_out_of_range ? beyond_range(text) : number;
 }
 
-/// The symbol of one token of a key, or an empty one.
-std::string_view symbol(std::string_view token) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 31> symbols = {
-      {{"m", "m"},   {"mm", "mm"}, {"um", "um"},   {"m2", "m^2"},  {"mm2", "mm^2"}, {"m3", "m^3"},  {"mm3", "mm^3"},
-       {"s", "s"},   {"ms", "ms"}, {"us", "us"},   {"s2", "s^2"},  {"s3", "s^3"},   {"min", "min"}, {"hour", "h"},
-       {"h", "h"},   {"hz", "Hz"}, {"khz", "kHz"}, {"rpm", "rpm"}, {"rad", "rad"},  {"deg", "deg"}, {"n", "N"},
-       {"kn", "kN"}, {"kg", "kg"}, {"g", "g"},     {"pa", "Pa"},   {"mpa", "MPa"},  {"gpa", "GPa"}, {"w", "W"},
-       {"kw", "kW"}, {"mv", "mV"}, {"v", "V"}}};
-  for (const auto& [name, text] : symbols) {
-    if (token == name) return text;
-  }
-  return {};
-}
-
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
@@ -96,39 +82,6 @@ bool is_time_column(std::string_view name) {
   const std::string word = lowered(name);
   constexpr std::string_view known[] = {"time_s", "time", "t", "time (s)", "time [s]", "t_s", "t (s)", "t [s]"};
   return std::ranges::find(known, word) != std::end(known);
-}
-
-std::string unit_of_key(std::string_view key) {
-  if (const std::size_t dot = key.rfind('.'); dot != std::string_view::npos) key.remove_prefix(dot + 1);
-  key = key.substr(0, key.find('['));
-  std::vector<std::string_view> tokens;
-  std::string_view rest = key;
-  while (true) {
-    const std::size_t bar = rest.rfind('_');
-    if (bar == std::string_view::npos) break;
-    const std::string_view token = rest.substr(bar + 1);
-    if (token != "per" && symbol(token).empty()) break;
-    tokens.push_back(token);
-    rest = rest.substr(0, bar);
-  }
-  std::string above, below;
-  bool divided = false;
-  int fractions = 0;
-  for (auto token = tokens.rbegin(); token != tokens.rend(); ++token) {
-    std::string& part = divided ? below : above;
-    if (*token == "per") {
-      if (divided) part += '/';
-      divided = true;
-      ++fractions;
-      continue;
-    }
-    if (!part.empty() && part.back() != '/') part += ' ';
-    part += symbol(*token);
-  }
-  if (below.empty()) return above;
-  const bool compound = fractions > 1 || below.find(' ') != std::string::npos;
-  if (compound) below = fmt::format("({})", below);
-  return fmt::format("{}/{}", above.empty() ? "1" : above, below);
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

@@ -22,9 +22,6 @@ namespace robomill::io {
 /// A header longer than this is no header.
 inline constexpr std::size_t max_header_lines = 200;
 
-/// "N/mm^2" of "tangential_n_per_mm2": what the tokens at the end of a key say; empty where they name no unit.
-[[nodiscard]] std::string unit_of_key(std::string_view key);
-
 /// The known word that a misspelt one is nearest to, or an empty string where none is near.
 template <class Words>
 [[nodiscard]] std::string nearest_word(std::string_view word, const Words& known);

@@ -47,26 +47,6 @@ TEST(Text, RoundsAwayWhatAConversionAdds) {
   }
 }
 
-TEST(Text, DerivesUnitsFromKeys) {
-  EXPECT_EQ(unit_of_key("coefficients.tangential_n_per_mm2"), "N/mm^2");
-  EXPECT_EQ(unit_of_key("tangential_edge_n_per_mm"), "N/mm");
-  EXPECT_EQ(unit_of_key("cut.axial_depth_mm[1]"), "mm");
-  EXPECT_EQ(unit_of_key("spindle_speed_rpm"), "rpm");
-  EXPECT_EQ(unit_of_key("feed_per_tooth_mm"), "mm");
-  EXPECT_EQ(unit_of_key("youngs_modulus_gpa"), "GPa");
-  EXPECT_EQ(unit_of_key("density_kg_per_m3"), "kg/m^3");
-  EXPECT_EQ(unit_of_key("joint_stiffness_n_m_per_rad"), "N m/rad");
-  EXPECT_EQ(unit_of_key("rotational_damping_n_m_s_per_rad"), "N m s/rad");
-  EXPECT_EQ(unit_of_key("response_mv_per_m_per_s2"), "mV/(m/s^2)");
-  EXPECT_EQ(unit_of_key("max_jerk_mm_per_s3"), "mm/s^3");
-  EXPECT_EQ(unit_of_key("feed_mm_per_min"), "mm/min");
-  EXPECT_EQ(unit_of_key("false_alarms_per_hour"), "1/h");
-  EXPECT_EQ(unit_of_key("power_kw"), "kW");
-  EXPECT_EQ(unit_of_key("damping_ratio"), "");
-  EXPECT_EQ(unit_of_key("teeth"), "");
-  EXPECT_EQ(unit_of_key("n"), "");
-}
-
 TEST(Text, FindsTheNearestWord) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
   EXPECT_EQ(edit_distance("teeth", "teteh"), 1u);

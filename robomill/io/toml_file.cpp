@@ -11,6 +11,7 @@
 #include <span>
 
 #include "robomill/io/file.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_lines.hpp"
 #include "robomill/io/toml_synonyms.hpp"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::io {

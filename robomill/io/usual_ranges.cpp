@@ -10,6 +10,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::io {

@@ -12,6 +12,7 @@
 
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"

@@ -11,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::robot {

@@ -1,0 +1,139 @@
+#include "robomill/io/schema.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "robomill/base/units.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::io {
+namespace schema_test {
+
+using robomill::test::rejection;
+
+enum class Kind { flat, ball };
+constexpr Name<Kind> kinds[] = {{"flat-end", Kind::flat}, {"ball-end", Kind::ball}};
+
+struct Mode {
+  double frequency_hz = 0.0, damping_ratio = 0.02;
+};
+struct Tool {
+  int teeth = 2;
+  double diameter_m = 0.01;
+  Kind kind = Kind::flat;
+  std::vector<double> pitch_rad = {};
+  std::optional<double> mass_kg = {};
+  std::array<double, 2> spindle_speed_rad_per_s = {};
+  std::vector<Mode> modes = {};
+  bool worn = false;
+  std::string name = {};
+};
+
+const Table<Mode>& mode_table() {
+  static const Table<Mode> table(
+      "mode", "a mode of the tip",
+      {key("frequency_hz", &Mode::frequency_hz, "natural frequency").above(0.0).required("From a tap test"),
+       key("damping_ratio", &Mode::damping_ratio, "share of critical").above(0.0).below(1.0)});
+  return table;
+}
+
+const Table<Tool>& tool_table() {
+  static const Table<Tool> table(
+      "tool", "the cutter",
+      {key("teeth", &Tool::teeth, "cutting edges").at_least(1.0).required(),
+       key("diameter_mm", &Tool::diameter_m, "over the edges").above(0.0).required("On its drawing"),
+       key("kind", &Tool::kind, kinds, "shape of its end"), key("pitch_deg", &Tool::pitch_rad, "from tooth to tooth"),
+       key("mass_kg", &Tool::mass_kg, "of the tool").above(0.0).optional(),
+       key("spindle_speed_rpm", &Tool::spindle_speed_rad_per_s, "from, to").entries(2),
+       key("modes", &Tool::modes, mode_table(), "of its tip"), key("worn", &Tool::worn, "edges are worn"),
+       key("name", &Tool::name, "as the shop calls it").optional()});
+  return table;
+}
+
+Tool read(const std::string& text) {
+  TomlFile file(TomlSource("tool.toml", text));
+  Tool out;
+  tool_table().read(file, "tool", out, "");
+  static_cast<void>(file.done());
+  return out;
+}
+
+constexpr const char* whole = R"([tool]
+teeth = 3
+diameter_mm = 12
+kind = "ball-end"
+pitch_deg = [120, 100, 140]
+mass_kg = 0.4
+spindle_speed_rpm = [6000, 12000]
+modes = [{ frequency_hz = 620 }, { frequency_hz = 900, damping_ratio = 0.03 }]
+worn = true
+name = "EM12"
+)";
+
+TEST(Schema, ReadsInSiWhatTheRowsSay) {
+  const Tool tool = read(whole);
+  EXPECT_EQ(tool.teeth, 3);
+  EXPECT_EQ(tool.diameter_m, 12.0 * units::mm);
+  EXPECT_EQ(tool.kind, Kind::ball);
+  ASSERT_EQ(tool.pitch_rad.size(), 3U);
+  EXPECT_EQ(tool.pitch_rad[1], 100.0 * units::deg);
+  EXPECT_EQ(tool.mass_kg, 0.4);
+  EXPECT_EQ(tool.spindle_speed_rad_per_s[1], 12000.0 * units::rpm);
+  ASSERT_EQ(tool.modes.size(), 2U);
+  EXPECT_EQ(tool.modes[0].damping_ratio, 0.02) << "the struct's own default";
+  EXPECT_EQ(tool.modes[1].damping_ratio, 0.03);
+  EXPECT_TRUE(tool.worn);
+}
+
+TEST(Schema, WritesWhatItReads) {
+  const Json json = tool_table().write(read(whole));
+  EXPECT_EQ(json.dump(),
+            "{\"teeth\":3,\"diameter_mm\":12.0,\"kind\":\"ball-end\",\"pitch_deg\":[120.0,100.0,140.0],\"mass_kg\":0.4,"
+            "\"spindle_speed_rpm\":[6000.0,12000.0],\"modes\":[{\"frequency_hz\":620.0,\"damping_ratio\":0.02},"
+            "{\"frequency_hz\":900.0,\"damping_ratio\":0.03}],\"worn\":true,\"name\":\"EM12\"}");
+  const Json fresh = tool_table().write(Tool{});
+  EXPECT_FALSE(fresh.contains("mass_kg"));
+}
+
+TEST(Schema, RejectsByLineKeyValueAndRule) {
+  const auto rejected = [](const std::string& from, const std::string& to) {
+    std::string text = whole;
+    text.replace(text.find(from), from.size(), to);
+    return rejection([&] { static_cast<void>(read(text)); });
+  };
+  EXPECT_EQ(rejected("diameter_mm = 12", "diameter_mm = 0"), "tool.toml:3: tool.diameter_mm = 0 mm; must be > 0");
+  EXPECT_NE(rejected("teeth = 3", "teeth = 0").find("tool.toml:2: tool.teeth = 0; must be >= 1"), std::string::npos);
+  EXPECT_NE(rejected("damping_ratio = 0.03", "damping_ratio = 3").find("must lie between 0 and 1"), std::string::npos);
+  EXPECT_NE(rejected("diameter_mm = 12\n", "").find("tool.diameter_mm: is missing. On its drawing"), std::string::npos)
+      << rejected("diameter_mm = 12\n", "");
+  EXPECT_NE(rejected("\"ball-end\"", "\"ball\"").find("must be one of \"flat-end\", \"ball-end\""), std::string::npos);
+  EXPECT_NE(rejected("[6000, 12000]", "[6000]").find("must hold 2"), std::string::npos);
+  EXPECT_NE(rejected("worn", "wron").find("Did you mean tool.worn?"), std::string::npos) << rejected("worn", "wron");
+}
+
+TEST(Schema, IsAJsonSchemaOfWhatItWrites) {
+  const Json schema = json_schema(tool_table().info(), 1);
+  EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_EQ(schema["additionalProperties"], false);
+  EXPECT_EQ(schema["required"], Json({"teeth", "diameter_mm"}));
+  const Json& keys = schema["properties"];
+  EXPECT_EQ(keys["diameter_mm"], Json({{"type", "number"},
+                                       {"exclusiveMinimum", 0.0},
+                                       {"description", "over the edges [mm]"}}));
+  EXPECT_EQ(keys["kind"]["enum"], Json({"flat-end", "ball-end"}));
+  EXPECT_EQ(keys["kind"]["default"], "flat-end");
+  EXPECT_EQ(keys["spindle_speed_rpm"]["minItems"], 2);
+  EXPECT_EQ(keys["modes"]["items"]["properties"]["damping_ratio"]["default"], 0.02);
+}
+
+TEST(Schema, IsATableOfTheDocuments) {
+  EXPECT_NE(markdown_rows(tool_table().info()).find("| `diameter_mm` | mm | required | over the edges |\n"),
+            std::string::npos);
+  EXPECT_NE(markdown_rows(tool_table().info()).find("| `modes[].damping_ratio` |  | 0.02 | share of critical |\n"),
+            std::string::npos)
+      << markdown_rows(tool_table().info());
+}
+
+}  // namespace schema_test
+}  // namespace robomill::io
