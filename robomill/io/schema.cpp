@@ -165,9 +165,9 @@ Json key_schema(const Key& key) {
   Json out = value_schema(key);
   if (key.nullable) out = or_null(std::move(out));
   for (int i = 0; i < key.lists; ++i) {
-    Json list = {{"type", "array"}, {"items", std::move(out)}};
+    Json list = {{"type", "array"}, {"items", out}};
     if (i == 0 && key.rule.entries > 0) list["minItems"] = list["maxItems"] = key.rule.entries;
-    out = std::move(list);
+    out = key.or_one ? Json{{"anyOf", Json::array({std::move(out), std::move(list)})}} : std::move(list);
   }
   const std::string unit = key.unit();
   out["description"] = unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, unit);
@@ -208,7 +208,13 @@ Json json_schema(const TableInfo& document, int version) {
               {"$id", fmt::format("https://robomill.org/schema/{}-{}.json", document.name, version)},
               {"title", document.name},
               {"description", document.meaning}};
-  out.update(schema_of(document));
+  Json table = schema_of(document);
+  Json properties = {{"document", {{"const", fmt::format("{}/{}", document.name, version)}}}};
+  properties.update(table["properties"]);
+  table["properties"] = std::move(properties);
+  if (!table.contains("required")) table["required"] = Json::array();
+  table["required"].insert(table["required"].begin(), "document");
+  out.update(table);
   return out;
 }
 

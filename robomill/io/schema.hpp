@@ -33,8 +33,8 @@ enum class Use {
 /// What a value must keep, in the unit of its key.
 struct Rule {
   double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
-  bool above = false, below = false;                       ///< the bound itself is excluded
-  std::size_t entries = 0;                                 ///< of a list; 0: any number
+  bool above = false, below = false;  ///< the bound itself is excluded
+  std::size_t entries = 0;            ///< of a list; 0: any number
   [[nodiscard]] bool keeps(double value) const;
   /// "must be > 0", "must lie between 0 and 1".
   [[nodiscard]] std::string text() const;
@@ -46,15 +46,16 @@ struct TableInfo;
 struct Key {
   std::string name = {};
   Holds holds = Holds::text;
-  int lists = 0;                            ///< 1: a list of them, 2: a list of lists
-  bool required = false;                    ///< a reader rejects a table without it; a writer always writes it
-  bool nullable = false;                    ///< null: not known, none
+  int lists = 0;          ///< 1: a list of them, 2: a list of lists
+  bool or_one = false;    ///< in place of a list one value, for all of its entries
+  bool required = false;  ///< a reader rejects a table without it; a writer always writes it
+  bool nullable = false;  ///< null: not known, none
   Rule rule = {};
-  std::vector<std::string> words = {};      ///< of Holds::word
-  const TableInfo* table = nullptr;         ///< of Holds::table
-  std::string meaning = {};                 ///< a phrase
-  std::string hint = {};                    ///< what a reader says where it is missing
-  Json default_value = nullptr;             ///< null: none
+  std::vector<std::string> words = {};  ///< of Holds::word
+  const TableInfo* table = nullptr;     ///< of Holds::table
+  std::string meaning = {};             ///< a phrase
+  std::string hint = {};                ///< what a reader says where it is missing
+  Json default_value = nullptr;         ///< null: none
   [[nodiscard]] std::string unit() const { return key_unit(name).text; }
 };
 
@@ -72,8 +73,8 @@ class Table;
 template <class T>
 struct Row {
   Key key = {};
-  std::string member = {};  ///< in errors about SI members
-  double factor = 1.0;      ///< SI value = factor * value
+  std::string member = {};                                                            ///< in errors about SI members
+  double factor = 1.0;                                                                ///< SI value = factor * value
   std::function<void(TomlFile&, const std::string& path, const Row&, T&)> read = {};  ///< empty: written only
   std::function<Json(const T&, const Row&)> write = {};
   bool always = true;       ///< the key is written of every object
@@ -211,8 +212,7 @@ Json write_value(const Eigen::Ref<const Eigen::VectorXd>& values, double factor)
 /// A row of the matrix a list.
 Json write_value(const Eigen::MatrixXd& values, double factor);
 template <class M>
-requires std::is_integral_v<M>
-Json write_value(M value, double /*factor*/) {
+requires std::is_integral_v<M> Json write_value(M value, double /*factor*/) {
   return value;
 }
 inline Json write_value(const std::string& value, double /*factor*/) {
@@ -223,8 +223,9 @@ Json write_value(const std::optional<M>& value, double factor) {
   return value ? write_value(*value, factor) : Json();
 }
 template <class List>
-requires requires(const List& list) { list.begin(); } && (!std::is_convertible_v<List, std::string_view>)
-Json write_value(const List& list, double factor) {
+requires requires(const List& list) {
+  list.begin();
+} &&(!std::is_convertible_v<List, std::string_view>)Json write_value(const List& list, double factor) {
   Json out = Json::array();
   for (const auto& value : list) out.push_back(write_value(value, factor));
   return out;
@@ -243,14 +244,16 @@ template <class T, class M>
                      .meaning = std::move(meaning)},
              .member = unit.member,
              .factor = unit.factor};
-  if constexpr (requires(TomlFile& file, M& out) {
+  if constexpr (requires(TomlFile & file, M & out) {
                   detail::read_value(file, std::string(), std::string(), 1.0, Key(), out);
                 }) {
     row.read = [member](TomlFile& file, const std::string& path, const Row<T>& self, T& out) {
       static_cast<void>(detail::read_value(file, path, self.member, self.factor, self.key, out.*member));
     };
   }
-  row.write = [member](const T& object, const Row<T>& self) { return detail::write_value(object.*member, self.factor); };
+  row.write = [member](const T& object, const Row<T>& self) {
+    return detail::write_value(object.*member, self.factor);
+  };
   return row;
 }
 
@@ -262,9 +265,7 @@ template <class T, class E, std::size_t n>
   row.read = [member, &names](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     file.choice(path, names, out.*member);
   };
-  row.write = [member, &names](const T& object, const Row<T>&) {
-    return text_or_null(name_in(names, object.*member));
-  };
+  row.write = [member, &names](const T& object, const Row<T>&) { return text_or_null(name_in(names, object.*member)); };
   return row;
 }
 
@@ -274,6 +275,22 @@ template <class T>
   Row<T> row{.key = {.name = std::move(name), .holds = holds, .meaning = std::move(meaning)}};
   row.write = [value = std::move(value)](const T& object, const Row<T>&) { return value(object); };
   return row;
+}
+
+/// A key of the table that a member is, as one of the object's own.
+template <class T, class U>
+[[nodiscard]] Row<T> of(U T::*part, Row<U> row) {
+  Row<T> out{
+      .key = row.key, .member = row.member, .factor = row.factor, .always = row.always, .drops_null = row.drops_null};
+  if (row.read) {
+    out.read = [part, row](TomlFile& file, const std::string& path, const Row<T>& self, T& object) {
+      Row<U> named = row;
+      named.member = self.member;
+      row.read(file, path, named, object.*part);
+    };
+  }
+  out.write = [part, row](const T& object, const Row<T>&) { return row.write(object.*part, row); };
+  return out;
 }
 
 /// What a row writes to leave its key out.
@@ -297,8 +314,7 @@ template <class T>
 class Table {
  public:
   /// @param use  Use::written: no default counts, and a key is required that is written of every object
-  Table(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read)
-      : rows_(std::move(rows)) {
+  Table(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read) : rows_(std::move(rows)) {
     info_.name = std::move(name);
     info_.meaning = std::move(meaning);
     info_.keys.reserve(rows_.size());
@@ -349,7 +365,8 @@ class Table {
 /// A key that holds another table.
 template <class T, class U>
 [[nodiscard]] Row<T> key(std::string name, U T::*member, const Table<U>& table, std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
+  Row<T> row{
+      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     table.read(file, path, out.*member);
   };
@@ -382,7 +399,8 @@ template <class T, class U>
 /// A table that may be absent.
 template <class T, class U>
 [[nodiscard]] Row<T> key(std::string name, std::optional<U> T::*member, const Table<U>& table, std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
+  Row<T> row{
+      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     if (file.has(path)) table.read(file, path, (out.*member).emplace());
   };
@@ -395,7 +413,8 @@ template <class T, class U>
 /// A table that a pointer of the object leads to; left out where that is null. Written only.
 template <class T, class U>
 [[nodiscard]] Row<T> part(std::string name, const U* T::*member, const Table<U>& table, std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
+  Row<T> row{
+      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.write = [member, &table](const T& object, const Row<T>&) {
     return object.*member != nullptr ? table.write(*(object.*member)) : absent();
   };
@@ -409,15 +428,29 @@ template <class T, class U, class Part>
   std::vector<Row<T>> out;
   out.reserve(rows.size());
   for (const Row<U>& row : rows) {
-    Row<T> lifted{.key = row.key, .member = row.member, .factor = row.factor, .always = row.always, .drops_null = row.drops_null};
+    Row<T> lifted{
+        .key = row.key, .member = row.member, .factor = row.factor, .always = row.always, .drops_null = row.drops_null};
     lifted.write = [row, part](const T& object, const Row<T>&) { return row.write(part(object), row); };
     out.push_back(std::move(lifted));
   }
   return out;
 }
 
+/// A kind of document: what it holds, and how often its keys have changed their meaning. A document of version 1 of
+/// lobes names itself "lobes/1", in its key `document`.
+template <class T>
+struct Document {
+  const Table<T>& table;
+  int version = 1;
+  [[nodiscard]] std::string name() const { return table.info().name + "/" + std::to_string(version); }
+  [[nodiscard]] Json write(const T& object) const {
+    Json out = {{"document", name()}};
+    out.update(table.write(object));
+    return out;
+  }
+};
+
 /// The JSON Schema (draft 2020-12) of a document.
-/// @param version  of the document: "lobes/1" is version 1 of lobes
 [[nodiscard]] Json json_schema(const TableInfo& document, int version);
 
 /// The rows of docs/formats.md: "| `key` | unit, values | default | meaning |", nested tables by their paths.

@@ -92,6 +92,7 @@ TEST(Schema, WritesWhatItReads) {
             "{\"teeth\":3,\"diameter_mm\":12.0,\"kind\":\"ball-end\",\"pitch_deg\":[120.0,100.0,140.0],\"mass_kg\":0.4,"
             "\"spindle_speed_rpm\":[6000.0,12000.0],\"modes\":[{\"frequency_hz\":620.0,\"damping_ratio\":0.02},"
             "{\"frequency_hz\":900.0,\"damping_ratio\":0.03}],\"worn\":true,\"name\":\"EM12\"}");
+  EXPECT_EQ((Document<Tool>{tool_table(), 2}.write(Tool{}))["document"], "tool/2");
   const Json fresh = tool_table().write(Tool{});
   EXPECT_FALSE(fresh.contains("mass_kg"));
 }
@@ -116,11 +117,11 @@ TEST(Schema, IsAJsonSchemaOfWhatItWrites) {
   const Json schema = json_schema(tool_table().info(), 1);
   EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
   EXPECT_EQ(schema["additionalProperties"], false);
-  EXPECT_EQ(schema["required"], Json({"teeth", "diameter_mm"}));
+  EXPECT_EQ(schema["required"], Json({"document", "teeth", "diameter_mm"}));
+  EXPECT_EQ(schema["properties"]["document"], Json({{"const", "tool/1"}}));
   const Json& keys = schema["properties"];
-  EXPECT_EQ(keys["diameter_mm"], Json({{"type", "number"},
-                                       {"exclusiveMinimum", 0.0},
-                                       {"description", "over the edges [mm]"}}));
+  EXPECT_EQ(keys["diameter_mm"],
+            Json({{"type", "number"}, {"exclusiveMinimum", 0.0}, {"description", "over the edges [mm]"}}));
   EXPECT_EQ(keys["kind"]["enum"], Json({"flat-end", "ball-end"}));
   EXPECT_EQ(keys["kind"]["default"], "flat-end");
   EXPECT_EQ(keys["spindle_speed_rpm"]["minItems"], 2);

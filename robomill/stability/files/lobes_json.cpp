@@ -6,6 +6,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 #include "robomill/stability/files/lobes_object.hpp"
+#include "robomill/stability/files/lobes_schema.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -67,66 +68,12 @@ io::Json map_json(const Eigen::MatrixXd& spectral_radius) {
   return rows;
 }
 
-/// A limit beyond the range is null.
-io::Json depths_json(const Eigen::VectorXd& depths_m) {
-  io::Json out = io::Json::array();
-  for (const double depth : depths_m) {
-    if (std::isfinite(depth)) {
-      out.push_back(io::number(depth / units::mm));
-    } else {
-      out.push_back(nullptr);
-    }
-  }
-  return out;
-}
-
-io::Json uncertainty_json(const UncertainLimits& limits) {
-  return {{"samples", limits.samples},
-          {"spindle_speed_rpm", grid_json(limits.spindle_speed_rad_per_s, units::rpm)},
-          {"axial_depth_mm", grid_json(limits.axial_depth_m, units::mm)},
-          {"limit_5_percent_mm", depths_json(limits.limit_5_percent_m)},
-          {"limit_50_percent_mm", depths_json(limits.limit_50_percent_m)},
-          {"limit_95_percent_mm", depths_json(limits.limit_95_percent_m)},
-          {"chatter_probability", map_json(limits.chatter_probability)},
-          {"seconds", io::number(limits.seconds)}};
-}
-
 }  // namespace
 
 io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
-  io::Json json;
-  json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
-  json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
-  if (result.spectral_radius.size() > 0) json["spectral_radius"] = map_json(result.spectral_radius);
-  json["boundary"] = io::Json::array();
-  for (const BoundaryPoint& point : result.boundary) json["boundary"].push_back(boundary_json(point));
-  json["limit"] = io::Json::array();
-  for (const Limit& limit : result.limit) {
-    io::Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
-    if (limit.status == Limit::Status::found) {
-      add_chatter(row, limit);
-      row["error_estimate"] = io::number(limit.error_estimate);
-    } else {
-      row["axial_depth_mm"] = nullptr;
-    }
-    json["limit"].push_back(row);
-  }
-  json["points"] = io::Json::array();
-  for (const PointResult& point : result.points) json["points"].push_back(evaluated_json(point));
-  json["method"] = to_string(result.method);
-  json["period"] = to_string(result.period);
-  json["evaluations"] = result.evaluations;
-  json["unsettled"] = result.unsettled;
-  json["uncertain"] = result.uncertain;
-  json["seconds"] = io::number(result.seconds);
-  if (uncertain.samples > 0) json["uncertainty"] = uncertainty_json(uncertain);
-  if (surface.axial_depth_m.size() > 0) {
-    json["surface"] = {{"spindle_speed_rpm", grid_json(surface.spindle_speed_rad_per_s, units::rpm)},
-                       {"axial_depth_mm", grid_json(surface.axial_depth_m, units::mm)},
-                       {"surface_location_error_um", map_json(surface.surface_location_error_m / units::um)},
-                       {"peak_to_peak_um", map_json(surface.peak_to_peak_m / units::um)}};
-  }
-  return json;
+  return lobes_document().write({.lobes = &result,
+                                 .uncertain = uncertain.samples > 0 ? &uncertain : nullptr,
+                                 .surface = surface.axial_depth_m.size() > 0 ? &surface : nullptr});
 }
 
 std::string sweep_json(const SweepResult& result) {

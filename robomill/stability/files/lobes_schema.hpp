@@ -13,6 +13,6 @@ struct LobesView {
   const UncertainLimits* uncertain = nullptr;  ///< null: not asked for
   const SurfaceMap* surface = nullptr;         ///< null: not asked for
 };
-[[nodiscard]] const io::Table<LobesView>& lobes_table();
+[[nodiscard]] io::Document<LobesView> lobes_document();
 
 }  // namespace robomill::stability
