@@ -18,7 +18,8 @@ constexpr Name<CutterKind> kinds[] = {{"flat-end", CutterKind::flat_end},
 
 /// One helix angle, or one a tooth.
 Row<FlatEndMill> helix_key() {
-  Row<FlatEndMill> row = key("helix_deg", &FlatEndMill::tooth_helix_rad, "helix angle of the edges; a list: one a tooth");
+  Row<FlatEndMill> row =
+      key("helix_deg", &FlatEndMill::tooth_helix_rad, "helix angle of the edges; a list: one a tooth");
   row.key.or_one = true;
   row.member = "tooth_helix_rad";
   row.read = [](io::TomlFile& file, const std::string& path, const Row<FlatEndMill>& self, FlatEndMill& mill) {
@@ -44,23 +45,31 @@ const Table<Cutter>& cutter_table() {
        of(&Cutter::mill, key("teeth", &FlatEndMill::teeth, "cutting edges").at_least(1.0).at_most(100.0)),
        of(&Cutter::mill, key("diameter_mm", &FlatEndMill::diameter_m, "over the cutting edges").above(0.0)),
        of(&Cutter::mill, helix_key()),
-       of(&Cutter::mill, key("pitch_deg", &FlatEndMill::pitch_rad, "from tooth to tooth, where the teeth are unequally spaced")),
-       of(&Cutter::mill, key("runout_um", &FlatEndMill::runout_m, "offset of the cutter's axis from the spindle's").at_least(0.0)),
+       of(&Cutter::mill,
+          key("pitch_deg", &FlatEndMill::pitch_rad, "from tooth to tooth, where the teeth are unequally spaced")),
+       of(&Cutter::mill,
+          key("runout_um", &FlatEndMill::runout_m, "offset of the cutter's axis from the spindle's").at_least(0.0)),
        of(&Cutter::mill, key("runout_angle_deg", &FlatEndMill::runout_angle_rad,
                              "of that offset, clockwise from where the first tooth stands at the tip")),
-       key("cutting_height_mm", &Cutter::cutting_height_m, "how far above the tip the edges reach; 0: two diameters").at_least(0.0),
+       key("cutting_height_mm", &Cutter::cutting_height_m, "how far above the tip the edges reach; 0: two diameters")
+           .at_least(0.0),
        key("corner_radius_mm", &Cutter::corner_radius_m, "of a bull nose or a general cutter").at_least(0.0),
-       key("corner_center_radius_mm", &Cutter::corner_center_radius_m, "general cutter: centre of the corner from the axis"),
-       key("corner_center_height_mm", &Cutter::corner_center_height_m, "general cutter: centre of the corner above the tip"),
-       key("bottom_angle_deg", &Cutter::bottom_angle_rad, "general cutter: of the bottom above the plane that it stands on"),
-       key("side_angle_deg", &Cutter::side_angle_rad, "general cutter: of the side from the axis; above 0 it widens upwards")});
+       key("corner_center_radius_mm", &Cutter::corner_center_radius_m,
+           "general cutter: centre of the corner from the axis"),
+       key("corner_center_height_mm", &Cutter::corner_center_height_m,
+           "general cutter: centre of the corner above the tip"),
+       key("bottom_angle_deg", &Cutter::bottom_angle_rad,
+           "general cutter: of the bottom above the plane that it stands on"),
+       key("side_angle_deg", &Cutter::side_angle_rad,
+           "general cutter: of the side from the axis; above 0 it widens upwards")});
   return table;
 }
 
 const Table<ProcessDamping>& process_damping_table() {
   static const Table<ProcessDamping> table(
       "process_damping", "a worn land under the edge that is pressed into the wave",
-      {key("indentation_n_per_mm3", &ProcessDamping::indentation_n_per_m3, "specific indentation force of the material").at_least(0.0),
+      {key("indentation_n_per_mm3", &ProcessDamping::indentation_n_per_m3, "specific indentation force of the material")
+           .at_least(0.0),
        key("wear_land_mm", &ProcessDamping::wear_land_m, "length of the worn land").at_least(0.0),
        key("friction", &ProcessDamping::friction, "of the land on the material").at_least(0.0)});
   return table;

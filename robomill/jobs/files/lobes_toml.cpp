@@ -16,10 +16,12 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/cutting/files/cutter_schema.hpp"
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/process/files/cut_fields.hpp"
+#include "robomill/stability/files/chart_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -225,13 +227,8 @@ void read_coefficients_of(io::TomlFile& file, LobesFile& out, cutting::Coefficie
 void read_forces(io::TomlFile& file, LobesFile& out, cutting::CoefficientTable& table) {
   read_coefficients_of(file, out, table);
   cutting::Milling& milling = out.problem.milling;
-  cutting::ProcessDamping& damping = milling.process_damping;
-  file.number("process_damping.indentation_n_per_mm3", "indentation_n_per_m3", units::n_per_mm3,
-              damping.indentation_n_per_m3);
-  file.number("process_damping.wear_land_mm", "wear_land_m", units::mm, damping.wear_land_m);
-  file.number("process_damping.friction", "friction", 1.0, damping.friction);
-  file.number("speed_variation.amplitude_ratio", "amplitude_ratio", 1.0, milling.speed_variation.amplitude_ratio);
-  file.number("speed_variation.frequency_ratio", "frequency_ratio", 1.0, milling.speed_variation.frequency_ratio);
+  cutting::process_damping_table().read(file, "process_damping", milling.process_damping);
+  cutting::speed_variation_table().read(file, "speed_variation", milling.speed_variation);
   file.locate([&] { milling.validate(); });
 }
 
@@ -242,68 +239,44 @@ void read_pair(io::TomlFile& file, const char* key, const char* member, double f
   out = {values[0], values[1]};
 }
 
+/// What a chart varies beside the speed, and the key of its range.
+struct SweptKey {
+  stability::SweptParameter parameter;
+  const char* key;
+  double factor;
+};
+constexpr SweptKey swept_keys[] = {{stability::SweptParameter::radial_depth, "lobes.radial_depth_mm", units::mm},
+                                   {stability::SweptParameter::lead, "lobes.lead_deg", units::deg},
+                                   {stability::SweptParameter::tilt, "lobes.tilt_deg", units::deg}};
+
 void read_chart(io::TomlFile& file, LobesFile& out) {
   stability::LobesOptions& options = out.options;
   file.require("lobes.spindle_speed_rpm", "[from, to]");
-  read_pair(file, "lobes.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, options.spindle_speed_rad_per_s);
-  using stability::SweptParameter;
-  switch (out.sweep) {
-    case SweptParameter::axial_depth:
-      file.require("lobes.axial_depth_mm", "[from, to]");
-      read_pair(file, "lobes.axial_depth_mm", "axial_depth_m", units::mm, options.axial_depth_m);
-      break;
-    case SweptParameter::radial_depth:
-      file.require("lobes.radial_depth_mm", "[from, to], what the chart varies");
-      read_pair(file, "lobes.radial_depth_mm", "range", units::mm, out.sweep_range);
-      break;
-    case SweptParameter::lead:
-      file.require("lobes.lead_deg", "[from, to], what the chart varies");
-      read_pair(file, "lobes.lead_deg", "range", units::deg, out.sweep_range);
-      break;
-    case SweptParameter::tilt:
-      file.require("lobes.tilt_deg", "[from, to], what the chart varies");
-      read_pair(file, "lobes.tilt_deg", "range", units::deg, out.sweep_range);
-      break;
+  const auto* const swept = std::ranges::find(swept_keys, out.sweep, &SweptKey::parameter);
+  if (swept == std::end(swept_keys)) {
+    file.require("lobes.axial_depth_mm", "[from, to]");
+    stability::chart_options_table().read(file, "lobes", options);
+    file.locate([&] { options.validate(); });
+    return;
   }
-  if (out.sweep != SweptParameter::axial_depth) {
-    for (const char* key : {"lobes.method", "lobes.intervals", "lobes.output", "uncertainty"}) {
-      if (file.has(key)) throw file.reject(key, "does not go with a sweep of another parameter than the axial depth");
-    }
-    options.axial_depth_m = {0.0, std::max(out.problem.spatial->cut.axial_depth_m, 1e-6)};  // does not count
-    options.grid = {60, 40};
+  file.require(swept->key, "[from, to], what the chart varies");
+  for (const char* key : {"lobes.method", "lobes.intervals", "lobes.output", "uncertainty", "lobes.axial_depth_mm"}) {
+    if (file.has(key)) throw file.reject(key, "does not go with a sweep of another parameter than the axial depth");
   }
-  std::vector<int> grid;
-  if (file.integers("lobes.grid", "grid", grid)) {
-    if (grid.size() != 2) throw file.reject("lobes.grid", "must be [speeds, depths]");
-    options.grid = {grid[0], grid[1]};
-  }
-  file.choice("lobes.method", stability::method_names, options.method);
-  file.choice<stability::Output>(
-      "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);
-  file.integer("lobes.intervals", "intervals", options.intervals);
-  file.number("lobes.tolerance", "tolerance", 1.0, options.tolerance);
+  read_pair(file, swept->key, "range", swept->factor, out.sweep_range);
+  options.grid = {60, 40};
+  stability::chart_options_table().read(file, "lobes", options);
+  options.axial_depth_m = {0.0, std::max(out.problem.spatial->cut.axial_depth_m, 1e-6)};  // does not count
   file.locate([&] {
     options.validate();
-    if (out.sweep != SweptParameter::axial_depth) sweep_options(out).validate();
+    sweep_options(out).validate();
   });
 }
 
 void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
   if (!file.has("uncertainty")) return;
   u.samples = 200;
-  file.integer("uncertainty.samples", "samples", u.samples);
-  file.number("uncertainty.tangential_std_n_per_mm2", "tangential_std_n_per_m2", units::n_per_mm2,
-              u.tangential_std_n_per_m2);
-  file.number("uncertainty.radial_std_n_per_mm2", "radial_std_n_per_m2", units::n_per_mm2, u.radial_std_n_per_m2);
-  file.number("uncertainty.coefficient_std_ratio", "coefficient_std_ratio", 1.0, u.coefficient_std_ratio);
-  file.number("uncertainty.frequency_std_ratio", "frequency_std_ratio", 1.0, u.frequency_std_ratio);
-  file.number("uncertainty.damping_std_ratio", "damping_std_ratio", 1.0, u.damping_std_ratio);
-  file.number("uncertainty.residue_std_ratio", "residue_std_ratio", 1.0, u.residue_std_ratio);
-  std::vector<int> grid;
-  if (file.integers("uncertainty.grid", "grid", grid)) {
-    if (grid.size() != 2) throw file.reject("uncertainty.grid", "must be [speeds, depths]");
-    u.grid = {grid[0], grid[1]};
-  }
+  stability::uncertainty_options_table().read(file, "uncertainty", u);
   file.locate([&] { u.validate(); });
 }
 

@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/files/cutter_schema.hpp"
 #include "robomill/cutting/unusual_cut.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/usual_ranges.hpp"
@@ -62,43 +63,14 @@ void keep_named_directions(const io::TomlFile& file, const std::string& table, m
 
 }  // namespace
 
-void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool) {
-  file.integer("tool.teeth", "teeth", tool.teeth);
-  file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
-  if (file.is_number("tool.helix_deg")) {
-    file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
-  } else {
-    file.numbers("tool.helix_deg", "tooth_helix_rad", units::deg, tool.tooth_helix_rad);
-  }
-  file.numbers("tool.pitch_deg", "pitch_rad", units::deg, tool.pitch_rad);
-  file.number("tool.runout_um", "runout_m", units::um, tool.runout_m);
-  file.number("tool.runout_angle_deg", "runout_angle_rad", units::deg, tool.runout_angle_rad);
-  file.locate([&] { tool.validate(); });
-}
-
 void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
-  file.choice<cutting::CutterKind>("tool.kind",
-                                   {{"flat-end", cutting::CutterKind::flat_end},
-                                    {"ball-end", cutting::CutterKind::ball_end},
-                                    {"bull-nose", cutting::CutterKind::bull_nose},
-                                    {"general", cutting::CutterKind::general}},
-                                   cutter.kind);
+  cutting::cutter_table().read(file, "tool", cutter);
   if (cutter.kind == cutting::CutterKind::flat_end || cutter.kind == cutting::CutterKind::ball_end) {
     for (const char* key : {"tool.corner_radius_mm", "tool.corner_center_radius_mm", "tool.corner_center_height_mm",
                             "tool.bottom_angle_deg", "tool.side_angle_deg"}) {
       if (file.has(key)) throw file.reject(key, "is no part of this kind of cutter", "tool.kind says which it is");
     }
   }
-  read_mill(file, cutter.mill);
-  const auto length = [&](const char* key, const char* member, double& out) {
-    file.number(key, member, units::mm, out);
-  };
-  length("tool.cutting_height_mm", "cutting_height_m", cutter.cutting_height_m);
-  length("tool.corner_radius_mm", "corner_radius_m", cutter.corner_radius_m);
-  length("tool.corner_center_radius_mm", "corner_center_radius_m", cutter.corner_center_radius_m);
-  length("tool.corner_center_height_mm", "corner_center_height_m", cutter.corner_center_height_m);
-  file.number("tool.bottom_angle_deg", "bottom_angle_rad", units::deg, cutter.bottom_angle_rad);
-  file.number("tool.side_angle_deg", "side_angle_rad", units::deg, cutter.side_angle_rad);
   file.locate([&] { cutter.validate(); });
 }
 

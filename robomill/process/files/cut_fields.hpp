@@ -13,10 +13,7 @@
 /// What lobes.toml and forces.toml say alike.
 namespace robomill::process {
 
-/// [tool]: teeth, diameter, helix, pitch, runout; checked.
-void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool);
-
-/// [tool] of any cutter: the same, its kind (a flat end where it is absent) and outline; checked.
+/// [tool] of a milling cutter (cutting::cutter_table); checked.
 void read_cutter(io::TomlFile& file, cutting::Cutter& cutter);
 
 /// cut.direction; false where it is absent.

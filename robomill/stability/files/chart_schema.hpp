@@ -1,0 +1,13 @@
+#pragma once
+#include "robomill/io/schema.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "robomill/stability/uncertainty.hpp"
+
+namespace robomill::stability {
+
+/// [lobes] of a chart over the axial depth.
+[[nodiscard]] const io::Table<LobesOptions>& chart_options_table();
+/// [uncertainty]
+[[nodiscard]] const io::Table<Uncertainty>& uncertainty_options_table();
+
+}  // namespace robomill::stability
