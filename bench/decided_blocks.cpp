@@ -165,11 +165,11 @@ Drawn draw(const Judged& before, const Judged& after, const Settings& settings) 
 
 std::string text_of(const InTime& found, const process::BlockRow& row) {
   if (!found.cuts) return "- | - | -";
-  if (!found.error.empty()) return fmt::format("{:.4f} | - | {}", row.cut.spectral_radius, found.error);
+  if (!found.error.empty()) return fmt::format("{:.4f} | - | {}", row.stability.at.spectral_radius, found.error);
   const std::string verdict =
       found.chatters ? fmt::format("chatter of {:.0f} Hz", found.frequency_hz) : std::string("stable");
   const std::string multiplier = found.multiplier > 0.0 ? fmt::format("{:.4f}", found.multiplier) : std::string("-");
-  return fmt::format("{:.4f} | {} | {}{}, {:.2f} in {:.3g} s", row.cut.spectral_radius, multiplier, verdict,
+  return fmt::format("{:.4f} | {} | {}{}, {:.2f} in {:.3g} s", row.stability.at.spectral_radius, multiplier, verdict,
                      found.by_motion ? "" : "*", found.quarters, found.seconds);
 }
 
@@ -201,7 +201,7 @@ struct Score {
     most_steps = std::max(most_steps, found.steps_per_revolution);
     if (found.multiplier > 0.0) {
       ++multipliers;
-      multiplier_off = std::max(multiplier_off, std::abs(found.multiplier - row.cut.spectral_radius));
+      multiplier_off = std::max(multiplier_off, std::abs(found.multiplier - row.stability.at.spectral_radius));
     }
   }
   void print(const char* name, bool fine) const {
@@ -361,7 +361,7 @@ bool judge_loads(const jobs::PlanResult& plan, const Judged& before, const Judge
     }
     limits[bent].look(i, load.peak_deflection_m.norm(), plan.job.decide.max_deflection_m);
     limits[bent].look(i, load.peak_deflection_m.norm(), plan.job.finish.max_deflection_m);
-    limits[surface].look(i, std::abs(row.cut.surface_error_m), plan.job.finish.max_surface_error_m);
+    limits[surface].look(i, std::abs(row.steady.surface_error_m), plan.job.finish.max_surface_error_m);
     limits[fastest].look(i, speed, machine.max_spindle_speed_rad_per_s);
     limits[slowest].look(i, speed, machine.min_spindle_speed_rad_per_s);
   }

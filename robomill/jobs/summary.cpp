@@ -200,13 +200,14 @@ void add_blocks(std::string& out, const process::ForcesResult& forces, const pro
   }
   const process::BlockRow& worst = blocks.rows[blocks.worst];
   append(out, "; the worst, gain margin {}, is in line {} (block {}): {:.4g} mm deep, ",
-         std::isfinite(worst.cut.gain_margin) ? fmt::format("{:.3g}", worst.cut.gain_margin) : "without end",
+         std::isfinite(worst.stability.at.gain_margin) ? fmt::format("{:.3g}", worst.stability.at.gain_margin)
+                                                       : "without end",
          forces.program->program.blocks[blocks.worst].line, blocks.worst + 1, worst.axial_depth_m / units::mm);
-  if (std::isfinite(worst.cut.limit_depth_m)) {
-    append(out, "limit {:.4g} mm, {} at {:.4g} Hz", worst.cut.limit_depth_m / units::mm, worst.cut.regime,
-           worst.cut.chatter_frequency_hz);
+  if (worst.stability.limited()) {
+    append(out, "limit {:.4g} mm, {} at {:.4g} Hz", worst.stability.at.limit_depth_m / units::mm,
+           to_string(worst.stability.regime), worst.stability.chatter_frequency_hz());
   } else {
-    append(out, "no limit up to {:.4g} mm", worst.cut.searched_depth_m / units::mm);
+    append(out, "no limit up to {:.4g} mm", worst.stability.searched_depth_m[1] / units::mm);
   }
   append(out, "\n             {} evaluations in {:.2f} s\n", blocks.evaluations, blocks.seconds);
 }

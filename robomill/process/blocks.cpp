@@ -56,7 +56,8 @@ std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOpti
 
 /// A result that several blocks share.
 struct Shared {
-  CutStability cut = {};
+  stability::BlockStability stability = {};
+  SteadyMotion steady = {};
   std::vector<LeftPlace> places = {};  ///< by falling magnitude of the error; empty without a stock
   std::optional<bool> measured_nearby = {};
   double joint_distance_rad = 0.0;
@@ -83,7 +84,8 @@ Shared evaluate(const ForcesResult& forces, std::size_t block, const DynamicsAt&
                                          .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
                                          .tolerance = options.tolerance},
                                         there.modes);
-    return {.cut = judged.stability,
+    return {.stability = judged.stability,
+            .steady = judged.steady,
             .places = sorted_places(forces, judged.surface),
             .measured_nearby = there.measured_nearby,
             .joint_distance_rad = there.joint_distance_rad,
@@ -109,15 +111,15 @@ std::vector<Shared> evaluate_classes(const ForcesResult& forces, const std::vect
 
 /// 1 - depth / limit, of the 5 % quantile where it is known; without a limit of the depth that was searched.
 double margin_of(const BlockRow& row) {
-  const CutStability& cut = row.cut;
-  double limit_m = std::isfinite(cut.limit_5_percent_m) ? cut.limit_5_percent_m : cut.limit_depth_m;
-  if (!std::isfinite(limit_m)) limit_m = cut.searched_depth_m;
+  const stability::BlockStability& found = row.stability;
+  double limit_m = std::isfinite(found.limit_5_percent_m) ? found.limit_5_percent_m : found.at.limit_depth_m;
+  if (!std::isfinite(limit_m)) limit_m = found.searched_depth_m[1];
   return 1.0 - row.axial_depth_m / limit_m;
 }
 
 /// (95 % - 5 % quantile) / limit; 0 where it is not known.
-double band_of(const CutStability& cut) {
-  const double band = (cut.limit_95_percent_m - cut.limit_5_percent_m) / cut.limit_depth_m;
+double band_of(const stability::BlockStability& found) {
+  const double band = (found.limit_95_percent_m - found.limit_5_percent_m) / found.at.limit_depth_m;
   return std::isfinite(band) ? band : 0.0;
 }
 
@@ -145,7 +147,7 @@ std::vector<BeyondMeasured> stretches_beyond(const std::vector<BlockRow>& rows, 
       BeyondMeasured& stretch = out.back();
       stretch.last = i;
       stretch.farthest_rad = std::max(stretch.farthest_rad, shared[row.evaluation].joint_distance_rad);
-      stretch.band = std::max(stretch.band, band_of(row.cut));
+      stretch.band = std::max(stretch.band, band_of(row.stability));
     }
     open = beyond;
   }
@@ -156,7 +158,7 @@ std::vector<BeyondMeasured> stretches_beyond(const std::vector<BlockRow>& rows, 
 double band_within(const std::vector<BlockRow>& rows) {
   std::vector<double> bands;
   for (const BlockRow& row : rows) {
-    const double band = row.cuts && row.measured_nearby.value_or(false) ? band_of(row.cut) : 0.0;
+    const double band = row.cuts && row.measured_nearby.value_or(false) ? band_of(row.stability) : 0.0;
     if (band > 0.0) bands.push_back(band);
   }
   if (bands.empty()) return 0.0;
@@ -194,7 +196,7 @@ void require_affordable_blocks(std::size_t evaluations, std::size_t blocks) {
 bool worse(const BlockRow& a, const BlockRow& b) {
   const auto rank = [](const BlockRow& row) {
     const auto known = [](double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; };
-    return std::tuple(!row.unstable(), known(row.cut.gain_margin), known(row.stability_margin));
+    return std::tuple(!row.unstable(), known(row.stability.at.gain_margin), known(row.stability_margin));
   };
   return rank(a) < rank(b);
 }
@@ -223,7 +225,8 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
   const std::vector<Shared> shared = evaluate_classes(forces, first, dynamics, options, progress);
   for (BlockRow& row : out.rows) {
     if (!row.cuts) continue;
-    row.cut = shared[row.evaluation].cut;
+    row.stability = shared[row.evaluation].stability;
+    row.steady = shared[row.evaluation].steady;
     row.measured_nearby = shared[row.evaluation].measured_nearby;
     row.unmatched = shared[row.evaluation].unmatched;
     row.stability_margin = margin_of(row);

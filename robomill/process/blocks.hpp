@@ -14,11 +14,15 @@
 #include "robomill/modal/modes.hpp"
 #include "robomill/process/forces.hpp"
 #include "robomill/robot/joint_load.hpp"
+#include "robomill/stability/block.hpp"
 #include "robomill/stability/forced_vibration.hpp"
 
 // Method: robomill/process/README.md, "Every block of a program (`blocks.hpp`)"
 
 namespace robomill::process {
+
+/// A number that is not known.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What vibrates where the robot stands.
 struct PostureDynamics {
@@ -61,22 +65,11 @@ struct BlocksJudging {
   BlocksOptions options = {};
 };
 
-/// Whether one cut is stable.
-struct CutStability {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double spectral_radius = none;
-  double limit_depth_m = none;  ///< lowest unstable depth; NaN: none up to searched_depth_m
-  double limit_5_percent_m = none, limit_95_percent_m = none;  ///< NaN: as above
-  double searched_depth_m = none;
-  bool below_range = false;   ///< unstable already at the least depth that was looked at, which stands as the limit
-  double gain_margin = none;  ///< infinity: none up to 1,000
-  double chatter_frequency_hz = none;
-  modal::ModeId mode = {};
-  std::string regime = "none";    ///< "regenerative", "mode-coupling", "low-frequency"; "none": no limit
-  bool lower_bound = false;       ///< process damping is not known and would lift the limit
-  double surface_error_m = none;  ///< over all that the pass leaves, flanks that later passes take away included
-  stability::ForcedVibration vibration = {};  ///< of the tip about its mean; NaN where it chatters or is not fed
-  double vibration_share = none;              ///< its amplitude over the feed per tooth that it was found at
+/// How the tip moves in one cut; NaN where that chatters or is not fed.
+struct SteadyMotion {
+  double surface_error_m = unknown;  ///< over all that the pass leaves, flanks that later passes take away included
+  stability::ForcedVibration vibration = {};  ///< about its mean
+  double vibration_share = unknown;           ///< its amplitude over the feed per tooth that it was found at
 };
 
 /// One block of a program.
@@ -84,24 +77,26 @@ struct BlockRow {
   bool cuts = false;                                 ///< else nothing below is known
   double axial_depth_m = 0.0, radial_depth_m = 0.0;  ///< where most of the cutter is in the material
   double spindle_speed_rad_per_s = 0.0;
-  CutStability cut = {};
-  double stability_margin = CutStability::none;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
+  /// Its quantiles lie within the depths that were searched.
+  stability::BlockStability stability = {};
+  SteadyMotion steady = {};
+  double stability_margin = unknown;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
   /// Of the places of the finished surface, that no later block takes away, the error of greatest magnitude; > 0:
   /// material is left standing. NaN: the block leaves none of it, chatters, or the program has no stock.
-  double surface_left_m = CutStability::none;
-  double joint_torque_share = CutStability::none;    ///< the greatest of a drive's, weight and cut; NaN: not known
-  double cut_joint_torque_n_m = CutStability::none;  ///< the greatest that the cut alone puts on a joint that turns
+  double surface_left_m = unknown;
+  double joint_torque_share = unknown;    ///< the greatest of a drive's, weight and cut; NaN: not known
+  double cut_joint_torque_n_m = unknown;  ///< the greatest that the cut alone puts on a joint that turns
   std::optional<bool> measured_nearby = {};
   std::size_t unmatched = 0;   ///< as cell::CellDynamics::unmatched
   std::size_t evaluation = 0;  ///< which one it shares, from 0
-  [[nodiscard]] bool unstable() const { return cuts && cut.spectral_radius >= 1.0; }
+  [[nodiscard]] bool unstable() const { return cuts && stability.at.spectral_radius >= 1.0; }
 };
 
 /// The limit over one coordinate of the tool's pose, with the same engagement.
 struct LimitScan {
   std::string parameter = {};        ///< "x_mm", "y_mm", "z_mm" (in W) or "gamma_deg"
   std::vector<double> value = {};    ///< [m] or [rad]
-  std::vector<double> limit_m = {};  ///< NaN: none, or the robot cannot stand there
+  std::vector<double> limit_m = {};  ///< infinite: none; NaN: the robot cannot stand there
 };
 
 /// Blocks on end, of those that cut, in which the robot stands beyond the measured postures.

@@ -126,12 +126,12 @@ TEST_F(Blocks, ASlotIsThatOfTheAnalyticCut) {
   const BlockRow& row = blocks.rows[9];  // amid the slot
   ASSERT_TRUE(row.cuts);
   EXPECT_NEAR(row.axial_depth_m, 1e-3, 0.03e-3);
-  EXPECT_NEAR(row.cut.spectral_radius, point.spectral_radius, 0.02 * point.spectral_radius);
+  EXPECT_NEAR(row.stability.at.spectral_radius, point.spectral_radius, 0.02 * point.spectral_radius);
   // Constant dynamics: where the robot stands does not matter.
   ASSERT_EQ(blocks.scans.size(), 4U);
   for (const LimitScan& scan : blocks.scans) {
     for (const double limit_m : scan.limit_m) {
-      if (std::isnan(limit_m)) continue;
+      if (!std::isfinite(limit_m)) continue;
       EXPECT_NEAR(limit_m, scan.limit_m[1], 1e-9) << scan.parameter;
     }
   }
@@ -156,18 +156,18 @@ TEST_F(Blocks, TheSurfaceErrorOfASlotIsThatOfTheAnalyticCut) {
   const stability::SurfacePoint surface = stability::surface_point(problem, {speed, 1e-3});
   ASSERT_TRUE(surface.stable);
   // Of two teeth one stands at either flank at once: the errors are alike, their signs are not.
-  EXPECT_NEAR(std::abs(blocks.rows[9].cut.surface_error_m), std::abs(surface.surface_location_error_m),
+  EXPECT_NEAR(std::abs(blocks.rows[9].steady.surface_error_m), std::abs(surface.surface_location_error_m),
               0.05 * surface.peak_deflection_m);
   int known = 0;
   for (const BlockRow& row : blocks.rows) {
     if (!row.cuts) continue;
-    EXPECT_FALSE(row.unstable() && std::isfinite(row.cut.surface_error_m));
-    if (std::isfinite(row.cut.surface_error_m)) ++known;
+    EXPECT_FALSE(row.unstable() && std::isfinite(row.steady.surface_error_m));
+    if (std::isfinite(row.steady.surface_error_m)) ++known;
   }
   EXPECT_GE(known, 30);
   const ProgramBlocks heavy_cut = judge_blocks(forces, dynamics(1e-3), {.scan_points = 0});
   ASSERT_TRUE(heavy_cut.rows[9].unstable());
-  EXPECT_TRUE(std::isnan(heavy_cut.rows[9].cut.surface_error_m));
+  EXPECT_TRUE(std::isnan(heavy_cut.rows[9].steady.surface_error_m));
 }
 
 // What is shared differs little from what each block would have got, and threads do not matter.
@@ -184,11 +184,11 @@ TEST_F(Blocks, SharedEvaluationsAreCloseToOwnOnes) {
   double largest = 0.0, largest_of_limit = 0.0;
   for (std::size_t i = 0; i < own.rows.size(); ++i) {
     if (!own.rows[i].cuts) continue;
-    const double radius = own.rows[i].cut.spectral_radius;
-    largest = std::max(largest, std::abs(shared.rows[i].cut.spectral_radius - radius) / std::max(1.0, radius));
-    const double limit_m = own.rows[i].cut.limit_depth_m;
-    if (std::isnan(limit_m)) continue;
-    largest_of_limit = std::max(largest_of_limit, std::abs(shared.rows[i].cut.limit_depth_m / limit_m - 1.0));
+    const double radius = own.rows[i].stability.at.spectral_radius;
+    largest = std::max(largest, std::abs(shared.rows[i].stability.at.spectral_radius - radius) / std::max(1.0, radius));
+    const double limit_m = own.rows[i].stability.at.limit_depth_m;
+    if (!std::isfinite(limit_m)) continue;
+    largest_of_limit = std::max(largest_of_limit, std::abs(shared.rows[i].stability.at.limit_depth_m / limit_m - 1.0));
   }
   EXPECT_GT(largest_of_limit, 1e-6);
   EXPECT_LT(largest_of_limit, 0.05);
@@ -273,9 +273,9 @@ TEST_F(Blocks, APlanWithoutLobesWritesThem) {
   for (std::size_t i = 0; i < plan.blocks->rows.size(); ++i) {
     const BlockRow& row = plan.blocks->rows[i];
     EXPECT_EQ(json["blocks"]["stability_margin"][i].is_null(), !row.cuts);
-    if (!row.cuts || !std::isfinite(row.cut.limit_depth_m)) continue;
-    EXPECT_NEAR(row.stability_margin, 1.0 - row.axial_depth_m / row.cut.limit_5_percent_m, 1e-12);
-    EXPECT_LE(row.cut.limit_5_percent_m, row.cut.limit_95_percent_m);
+    if (!row.cuts || !std::isfinite(row.stability.at.limit_depth_m)) continue;
+    EXPECT_NEAR(row.stability_margin, 1.0 - row.axial_depth_m / row.stability.limit_5_percent_m, 1e-12);
+    EXPECT_LE(row.stability.limit_5_percent_m, row.stability.limit_95_percent_m);
   }
   EXPECT_EQ(json["summary"]["cutting"], plan.blocks->cutting);
 }
@@ -343,8 +343,8 @@ TEST_F(Blocks, SaysWhereTheProgramLeavesTheMeasuredRegion) {
 TEST(WorstBlock, IsTheOneNearestToChatter) {
   const auto row = [](double radius, double gain, double margin) {
     BlockRow out{.cuts = true, .stability_margin = margin};
-    out.cut.spectral_radius = radius;
-    out.cut.gain_margin = gain;
+    out.stability.at.spectral_radius = radius;
+    out.stability.at.gain_margin = gain;
     return out;
   };
   const double none = std::numeric_limits<double>::infinity();

@@ -316,7 +316,7 @@ TEST_F(Compensate, BlocksAreJudgedByTheWallThatTheyLeave) {
     if (end_mm.y() > 0.25) {
       ++rough;
       EXPECT_TRUE(std::isnan(row.surface_left_m)) << i;
-      EXPECT_TRUE(std::isfinite(row.cut.surface_error_m)) << i;
+      EXPECT_TRUE(std::isfinite(row.steady.surface_error_m)) << i;
     } else if (end_mm.x() > 0.5 * job.length && end_mm.x() < job.length - 8.0) {
       ++compared;
       EXPECT_NEAR(row.surface_left_m, wall.worst_m, 0.1 * std::abs(wall.worst_m)) << i;

@@ -74,14 +74,15 @@ TEST_F(Decide, IsWithinTwoPercentOfLookingAtEverySpeed) {
       if (!judged.blocks.rows[i].cuts) continue;
       const cutting::PoseEngagement& cut = judged.forces.program->cuts[i];
       for (const double factor : {0.98, 0.99, 1.0, 1.01, 1.02}) {
-        const CutStability found = judged_cut({.setup = judged.forces.cut,
-                                               .cut = cut,
-                                               .base_from_work = judged.forces.cell->cell.workpiece.linear(),
-                                               .spindle_speed_rad_per_s = factor * speed * units::rpm},
-                                              all)
-                                       .stability;
-        const double limit = std::isfinite(found.limit_depth_m) ? found.limit_depth_m : found.searched_depth_m;
-        if (found.spectral_radius >= 1.0 || 1.0 - engaged_depth_m(cut) / limit < 0.2) time = 1e300;
+        const stability::BlockStability found =
+            judged_cut({.setup = judged.forces.cut,
+                        .cut = cut,
+                        .base_from_work = judged.forces.cell->cell.workpiece.linear(),
+                        .spindle_speed_rad_per_s = factor * speed * units::rpm},
+                       all)
+                .stability;
+        const double limit = found.limited() ? found.limit.axial_depth_m : found.searched_depth_m[1];
+        if (found.at.spectral_radius >= 1.0 || 1.0 - engaged_depth_m(cut) / limit < 0.2) time = 1e300;
       }
       const double feed = greatest_chip / cutting::greatest_chip_share(cut.engagement) * teeth * speed / 60.0;
       time += (judged.forces.program->program.blocks[i].end.tip_m - judged.forces.program->program.begin_of(i).tip_m)
@@ -119,7 +120,7 @@ TEST_F(Decide, TheProgramThatIsWrittenIsTheOneThatWasJudged) {
     const BlockRow& b = plan.blocks->rows[i];
     EXPECT_EQ(a.cuts, b.cuts);
     if (!a.cuts) continue;
-    EXPECT_NEAR(a.cut.spectral_radius, b.cut.spectral_radius, 1e-4);
+    EXPECT_NEAR(a.stability.at.spectral_radius, b.stability.at.spectral_radius, 1e-4);
     EXPECT_NEAR(a.spindle_speed_rad_per_s, b.spindle_speed_rad_per_s, 1e-4 * b.spindle_speed_rad_per_s);
     EXPECT_LE(again.forces->program->blocks[i].force.peak_force_n,
               1.001 * plan.forces->program->blocks[i].force.peak_force_n);
@@ -181,7 +182,7 @@ TEST_F(Decide, BlocksAreStableInTime) {
     const simulation::Simulation run =
         simulation::simulate(cut, {.seconds = 0.5, .sample_rate_hz = 2048.0, .tolerance = 1e-2});
     EXPECT_EQ(run.verdict, simulation::Verdict::stable) << "block " << i + 1;
-    EXPECT_NEAR(run.small.spectral_radius, row.cut.spectral_radius, 0.01) << "block " << i + 1;
+    EXPECT_NEAR(run.small.spectral_radius, row.stability.at.spectral_radius, 0.01) << "block " << i + 1;
   }
   EXPECT_GE(looked, 5);
 }
@@ -287,11 +288,11 @@ TEST_F(Decide, ForcedVibrationIsALimit) {
   const Judged judged = judge(dynamics);
   int beyond = 0;
   for (const BlockRow& row : judged.blocks.rows) {
-    if (!row.cuts || row.unstable() || !(row.cut.vibration_share > 1.0)) continue;
+    if (!row.cuts || row.unstable() || !(row.steady.vibration_share > 1.0)) continue;
     ++beyond;
-    EXPECT_EQ(row.cut.vibration.harmonic, 1);
-    EXPECT_NEAR(row.cut.vibration.frequency_hz, 400.0, 1e-9);
-    EXPECT_NEAR(row.cut.vibration.mode_frequency_hz, 400.0, 1e-6);
+    EXPECT_EQ(row.steady.vibration.harmonic, 1);
+    EXPECT_NEAR(row.steady.vibration.frequency_hz, 400.0, 1e-9);
+    EXPECT_NEAR(row.steady.vibration.mode_frequency_hz, 400.0, 1e-6);
   }
   ASSERT_GT(beyond, 0);
   const std::vector<std::string> warnings = block_warnings(judged.forces, judged.blocks);
@@ -310,7 +311,7 @@ TEST_F(Decide, ForcedVibrationIsALimit) {
   EXPECT_GT(found.as_programmed.peak_vibration_m, found.decided->peak_vibration_m);
   for (const BlockRow& row : found.blocks->rows) {
     if (!row.cuts) continue;
-    EXPECT_LE(row.cut.vibration_share, 1.005);
+    EXPECT_LE(row.steady.vibration_share, 1.005);
   }
   asked.machine.min_spindle_speed_rad_per_s = 11'900.0 * units::rpm;
   asked.machine.max_spindle_speed_rad_per_s = 12'100.0 * units::rpm;

@@ -93,7 +93,8 @@ class BlockSearch {
     const double guess = guessed ? out.gain.gain * point_.axial_depth_m : 0.0;
     const Crossing crossing = lowest_crossing(look, marks(point_.axial_depth_m, range[0], range[1], guess), crossing_);
     out.limit.spindle_speed_rad_per_s = point_.spindle_speed_rad_per_s;
-    out.limit_5_percent_m = out.limit_95_percent_m = none;
+    out.searched_depth_m = range;
+    out.at.limit_depth_m = out.limit_5_percent_m = out.limit_95_percent_m = none;
     if (crossing.status == Crossing::Status::none) return;
     out.limit.status = Limit::Status::found;
     out.limit.axial_depth_m = crossing.at;
@@ -101,7 +102,7 @@ class BlockSearch {
     out.limit.kind = crossing.outcome.kind;
     out.limit.mode = crossing.outcome.mode;
     out.limit.error_estimate = crossing.outcome.error_estimate;
-    out.limit_5_percent_m = out.limit_95_percent_m = crossing.at;
+    out.at.limit_depth_m = out.limit_5_percent_m = out.limit_95_percent_m = crossing.at;
     explain(crossing, out);
   }
 

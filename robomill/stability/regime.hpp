@@ -3,6 +3,8 @@
 #include "robomill/base/names.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "Regime (`regime.hpp`)"
+
 namespace robomill::stability {
 
 /// What makes a cut chatter.
@@ -30,6 +32,7 @@ struct RegimeResult {
 
 /// At a point that is unstable or on the border, by collocation; `stable` where the point is stable.
 /// @throws InvalidInput as evaluate_point
-[[nodiscard]] RegimeResult regime_at(const LobesProblem& problem, const OperatingPoint& point, double tolerance = 1e-4);
+[[nodiscard]] ROBOMILL_API RegimeResult regime_at(const LobesProblem& problem, const OperatingPoint& point,
+                                                  double tolerance = 1e-4);
 
 }  // namespace robomill::stability

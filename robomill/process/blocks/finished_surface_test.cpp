@@ -85,7 +85,7 @@ TEST_F(FinishedSurface, IsWhatLaterPassesLeave) {
     for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
       const BlockRow& row = blocks.rows[i];
       if (!row.cuts || !std::isfinite(row.surface_left_m)) continue;
-      EXPECT_LE(std::abs(row.surface_left_m), std::abs(row.cut.surface_error_m)) << i;
+      EXPECT_LE(std::abs(row.surface_left_m), std::abs(row.steady.surface_error_m)) << i;
       const Eigen::Vector3d tip_mm = forces.program->program.blocks[i].end.tip_m / units::mm;
       if (std::abs(tip_mm.x()) > 12.0) continue;
       ++compared;
@@ -102,7 +102,7 @@ TEST_F(FinishedSurface, IsWhatLaterPassesLeave) {
       EXPECT_LE(found, greatest_error_m(forces, i, modes, perhaps) * (1.0 + 1e-6)) << i;
       ASSERT_EQ(left[i].before.state, SurfaceLeft::State::known) << i;
       EXPECT_NEAR(row.surface_left_m, left[i].before.error_m, 0.05 * found) << i;
-      if (found < 0.9 * std::abs(row.cut.surface_error_m)) ++taken;
+      if (found < 0.9 * std::abs(row.steady.surface_error_m)) ++taken;
     }
   }
   EXPECT_GE(compared, 40);
@@ -121,7 +121,7 @@ TEST_F(FinishedSurface, OfASinglePassIsAllThatItLeaves) {
     }
     if (std::abs(forces.program->program.blocks[i].end.tip_m.x()) > 12.0 * units::mm) continue;
     ++compared;
-    EXPECT_NEAR(row.surface_left_m, row.cut.surface_error_m, 0.02 * std::abs(row.cut.surface_error_m)) << i;
+    EXPECT_NEAR(row.surface_left_m, row.steady.surface_error_m, 0.02 * std::abs(row.steady.surface_error_m)) << i;
   }
   EXPECT_GE(compared, 10);
   const ProgramBlocks chatters = judge_blocks(forces, dynamics(1e-3), {.scan_points = 0});
@@ -142,9 +142,9 @@ TEST_F(FinishedSurface, IsNotKnownWithoutAStock) {
   for (std::size_t i = 0; i < without.rows.size(); ++i) {
     EXPECT_TRUE(std::isnan(without.rows[i].surface_left_m)) << i;
     EXPECT_TRUE(column(without)[i].is_null()) << i;
-    const double error_m = with.rows[i].cut.surface_error_m;
+    const double error_m = with.rows[i].steady.surface_error_m;
     if (std::isfinite(error_m)) {
-      EXPECT_EQ(without.rows[i].cut.surface_error_m, error_m) << i;
+      EXPECT_EQ(without.rows[i].steady.surface_error_m, error_m) << i;
     }
   }
   const auto said = [](const ProgramBlocks& blocks) {
@@ -184,8 +184,8 @@ TEST_F(FinishedSurface, IsNotSharedBySlotsAcrossEachOther) {
   for (std::size_t i = 0; i < own.rows.size(); ++i) {
     if (!own.rows[i].cuts || !std::isfinite(own.rows[i].surface_left_m)) continue;
     ++compared;
-    const double error_m = own.rows[i].cut.surface_error_m;
-    EXPECT_NEAR(shared.rows[i].cut.surface_error_m, error_m, 0.05 * std::abs(error_m)) << i;
+    const double error_m = own.rows[i].steady.surface_error_m;
+    EXPECT_NEAR(shared.rows[i].steady.surface_error_m, error_m, 0.05 * std::abs(error_m)) << i;
   }
   EXPECT_GE(compared, 10);
 }

@@ -35,7 +35,7 @@ std::vector<LimitScan> limit_scans(const ForcesResult& forces, std::size_t block
   for (std::size_t k = 0; k < scans.size(); ++k) {
     scans[k].parameter = scan_parameters.at(k);
     scans[k].value.resize(points);
-    scans[k].limit_m.assign(points, CutStability::none);
+    scans[k].limit_m.assign(points, unknown);
   }
   parallel_for(scan_parameters.size() * points, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

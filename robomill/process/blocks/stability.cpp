@@ -21,7 +21,7 @@ constexpr double least_depth_m = 1e-6;
 
 /// The error of greatest magnitude; none where no edge leaves a surface.
 double worst_error_m(const std::vector<stability::SurfacePlace>& surface) {
-  double out = CutStability::none;
+  double out = unknown;
   for (const stability::SurfacePlace& place : surface) {
     if (!(std::abs(place.error_m) <= std::abs(out))) out = place.error_m;
   }
@@ -54,37 +54,23 @@ JudgedCut judged_cut(const BlockCut& at, const modal::ModalModel& modes) {
   options.tolerance = at.tolerance;
   options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
   const stability::LobesProblem problem = block_problem(at, modes);
-  const stability::BlockStability block =
-      stability::block_stability(problem, at.spindle_speed_rad_per_s, depth_m, options);
   JudgedCut judged;
-  CutStability& out = judged.stability;
-  out.spectral_radius = block.at.spectral_radius;
-  out.searched_depth_m = options.axial_depth_m[1];
-  out.chatter_frequency_hz = block.at.chatter_frequency_hz;
-  out.mode = block.at.mode;
-  if (block.limit.status == stability::Limit::Status::found) {
-    out.limit_depth_m = block.limit.axial_depth_m;
-    out.below_range = block.limit.axial_depth_m <= options.axial_depth_m[0];
+  stability::BlockStability& block = judged.stability;
+  block = stability::block_stability(problem, at.spindle_speed_rad_per_s, depth_m, options);
+  if (block.limited()) {
     // The first order knows nothing of depths that were not looked at.
-    const auto looked_at = [&](double depth) {
-      return std::clamp(depth, options.axial_depth_m[0], options.axial_depth_m[1]);
-    };
-    out.limit_5_percent_m = looked_at(block.limit_5_percent_m);
-    out.limit_95_percent_m = looked_at(block.limit_95_percent_m);
-    out.chatter_frequency_hz = block.limit.chatter_frequency_hz;
-    out.mode = block.limit.mode;
+    for (double* depth : {&block.limit_5_percent_m, &block.limit_95_percent_m}) {
+      *depth = std::clamp(*depth, options.axial_depth_m[0], options.axial_depth_m[1]);
+    }
   }
-  out.regime = to_string(block.regime);
-  out.lower_bound = block.lower_bound;
-  out.gain_margin = block.at.gain_margin;
   if (block.at.stable && problem.spatial->feed_per_tooth_m > 0.0) {
     stability::SteadyCut steady =
         stability::steady_cut(problem, {block.at.spindle_speed_rad_per_s, block.at.axial_depth_m}, at.tolerance);
     judged.surface = std::move(steady.profile);
-    out.vibration = steady.vibration;
-    out.vibration_share = steady.vibration.amplitude_m / problem.spatial->feed_per_tooth_m;
+    judged.steady.vibration = steady.vibration;
+    judged.steady.vibration_share = steady.vibration.amplitude_m / problem.spatial->feed_per_tooth_m;
   }
-  out.surface_error_m = worst_error_m(judged.surface);
+  judged.steady.surface_error_m = worst_error_m(judged.surface);
   return judged;
 }
 
@@ -94,9 +80,8 @@ double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
   options.tolerance = at.tolerance;
   options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
   options.margin = options.regime = options.quantiles = false;
-  const stability::Limit limit =
-      stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options).limit;
-  return limit.status == stability::Limit::Status::found ? limit.axial_depth_m : CutStability::none;
+  return stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options)
+      .at.limit_depth_m;
 }
 
 }  // namespace robomill::process

@@ -24,7 +24,8 @@ struct BlockCut {
 
 /// A cut's stability, and what it leaves place by place.
 struct JudgedCut {
-  CutStability stability = {};
+  stability::BlockStability stability = {};  ///< as of BlockRow
+  SteadyMotion steady = {};
   /// stability::surface_profile; empty where the cut is not fed or chatters, so that it has no steady motion.
   std::vector<stability::SurfacePlace> surface = {};
 };
@@ -33,7 +34,7 @@ struct JudgedCut {
 /// @throws InvalidInput where modes or cut are out of range
 [[nodiscard]] JudgedCut judged_cut(const BlockCut& cut, const modal::ModalModel& modes);
 
-/// The limit depth alone; NaN: none.
+/// The limit depth alone; infinity: none.
 [[nodiscard]] double limit_depth_m(const BlockCut& cut, const modal::ModalModel& modes);
 
 /// Height of the engaged part along the tool's axis, 1 µm at least: what limits are compared with.

@@ -99,9 +99,9 @@ void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 
   if (problem.finish.max_surface_error_m > 0.0 && std::isfinite(surface_m)) {
     add_if_broken(out, {{ProgramLimit::surface_error, surface_m, problem.finish.max_surface_error_m}, block});
   }
-  if (std::isfinite(row.cut.vibration_share)) {
+  if (std::isfinite(row.steady.vibration_share)) {
     const double feed_m = load.force.feed_per_tooth_m;  // blocks that share an evaluation differ in it a little
-    add_if_broken(out, {{ProgramLimit::forced_vibration, row.cut.vibration_share * feed_m, feed_m}, block});
+    add_if_broken(out, {{ProgramLimit::forced_vibration, row.steady.vibration_share * feed_m, feed_m}, block});
   }
   const double chip =
       load.force.feed_per_tooth_m * cutting::greatest_chip_share(forces.program->cuts[block].engagement);
@@ -127,7 +127,7 @@ bool rises_with_feed(ProgramLimit limit) {
 }
 
 double left_surface_error_m(const ForcesResult& forces, const BlockRow& row) {
-  return std::abs(forces.program->stock ? row.surface_left_m : row.cut.surface_error_m);
+  return std::abs(forces.program->stock ? row.surface_left_m : row.steady.surface_error_m);
 }
 
 JudgedRun::JudgedRun(const DecideProblem& asked, const ForcesResult& run, const ProgramBlocks& judged)
@@ -173,7 +173,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
     out.greatest_torque_share =
         std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));
-    out.peak_vibration_m = std::fmax(out.peak_vibration_m, row.cut.vibration.amplitude_m);
+    out.peak_vibration_m = std::fmax(out.peak_vibration_m, row.steady.vibration.amplitude_m);
     out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, left_surface_error_m(forces, row));
   }
   std::vector<std::size_t> turned;

@@ -59,7 +59,7 @@ JointSpeed joint_speed(const ForcesResult& forces, std::size_t block) {
 /// What remains of a block's surface error at the end, as programmed; 1 where that is not known.
 double left_share(const ForcesResult& forces, const BlockRow& row) {
   if (!row.cuts || row.unstable()) return 1.0;
-  const double whole_m = std::abs(row.cut.surface_error_m);
+  const double whole_m = std::abs(row.steady.surface_error_m);
   const double left_m = left_surface_error_m(forces, row);
   if (std::isnan(whole_m) || std::isnan(left_m)) return 0.0;
   return whole_m > 0.0 ? std::min(left_m / whole_m, 1.0) : 1.0;

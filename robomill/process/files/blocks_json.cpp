@@ -48,27 +48,27 @@ std::string chatter_warning(const ForcesResult& forces, const ProgramBlocks& blo
   std::string text =
       fmt::format("{} of {} blocks that cut are predicted to chatter; the worst is {}: {:.4g} mm deep", blocks.unstable,
                   blocks.cutting, named_block(forces, blocks.worst), row.axial_depth_m / units::mm);
-  if (std::isfinite(row.cut.limit_depth_m)) {
-    text += fmt::format(" at a limit of {:.4g} mm", row.cut.limit_depth_m / units::mm);
+  if (row.stability.limited()) {
+    text += fmt::format(" at a limit of {:.4g} mm", row.stability.at.limit_depth_m / units::mm);
   }
-  return text + fmt::format(", {} chatter of {} at {:.4g} Hz.", row.cut.regime, to_string(row.cut.mode),
-                            row.cut.chatter_frequency_hz);
+  return text + fmt::format(", {} chatter of {} at {:.4g} Hz.", to_string(row.stability.regime),
+                            to_string(row.stability.mode()), row.stability.chatter_frequency_hz());
 }
 
 /// Empty: the tip of no block vibrates by more than the feed per tooth.
 std::string vibration_warning(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  const auto share = [](const BlockRow& row) { return row.cuts ? row.cut.vibration_share : CutStability::none; };
+  const auto share = [](const BlockRow& row) { return row.cuts ? row.steady.vibration_share : unknown; };
   const auto count = std::ranges::count_if(blocks.rows, [&](const BlockRow& row) { return share(row) > 1.0; });
   if (count == 0) return {};
   std::size_t worst = 0;
   for (std::size_t i = 1; i < blocks.rows.size(); ++i) {
     if (!(share(blocks.rows[i]) <= share(blocks.rows[worst])) && share(blocks.rows[i]) > 0.0) worst = i;
   }
-  const CutStability& cut = blocks.rows[worst].cut;
+  const SteadyMotion& steady = blocks.rows[worst].steady;
   return fmt::format(
       "In {} of {} blocks that cut forced vibration exceeds the feed per tooth: teeth leave the cut and meet it again, "
       "which neither force nor stability describe. In {}, the worst, {}.",
-      count, blocks.cutting, named_block(forces, worst), vibration_text(cut.vibration, cut.vibration_share));
+      count, blocks.cutting, named_block(forces, worst), vibration_text(steady.vibration, steady.vibration_share));
 }
 
 std::string unmatched_warning(const ForcesResult& forces, const ProgramBlocks& blocks, std::size_t first) {
@@ -116,25 +116,25 @@ constexpr std::pair<const char*, BlockNumber> of_stability[] = {
     {"radial_depth_mm", [](const BlockLine& r) { return r.row.radial_depth_m / units::mm; }},
     {"spindle_speed_rpm", [](const BlockLine& r) { return r.row.spindle_speed_rad_per_s / units::rpm; }},
     {"feed_mm_per_min", [](const BlockLine& r) { return r.feed_m_per_s / units::mm * units::minute; }},
-    {"spectral_radius", [](const BlockLine& r) { return r.row.cut.spectral_radius; }},
-    {"limit_depth_mm", [](const BlockLine& r) { return r.row.cut.limit_depth_m / units::mm; }},
+    {"spectral_radius", [](const BlockLine& r) { return r.row.stability.at.spectral_radius; }},
+    {"limit_depth_mm", [](const BlockLine& r) { return r.row.stability.at.limit_depth_m / units::mm; }},
     {"stability_margin", [](const BlockLine& r) { return r.row.stability_margin; }},
-    {"chatter_frequency_hz", [](const BlockLine& r) { return r.row.cut.chatter_frequency_hz; }},
+    {"chatter_frequency_hz", [](const BlockLine& r) { return r.row.stability.chatter_frequency_hz(); }},
 };
 constexpr std::pair<const char*, BlockNumber> of_load[] = {
     {"peak_f_n", [](const BlockLine& r) { return r.force.force.peak_force_n; }},
     {"torque_n_m", [](const BlockLine& r) { return r.force.force.mean_torque_n_m; }},
     {"power_w", [](const BlockLine& r) { return r.force.force.power_w; }},
     {"deflection_um", [](const BlockLine& r) { return r.force.deflection_m.norm() / units::um; }},
-    {"surface_error_um", [](const BlockLine& r) { return r.row.cut.surface_error_m / units::um; }},
+    {"surface_error_um", [](const BlockLine& r) { return r.row.steady.surface_error_m / units::um; }},
     {"surface_left_um", [](const BlockLine& r) { return r.row.surface_left_m / units::um; }},
-    {"gain_margin", [](const BlockLine& r) { return r.row.cut.gain_margin; }},
-    {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_5_percent_m / units::mm; }},
-    {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_95_percent_m / units::mm; }},
+    {"gain_margin", [](const BlockLine& r) { return r.row.stability.at.gain_margin; }},
+    {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.stability.limit_5_percent_m / units::mm; }},
+    {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.stability.limit_95_percent_m / units::mm; }},
     {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
     {"joint_torque_share", [](const BlockLine& r) { return r.row.joint_torque_share; }},
     {"cut_joint_torque_n_m", [](const BlockLine& r) { return r.row.cut_joint_torque_n_m; }},
-    {"vibration_um", [](const BlockLine& r) { return r.row.cut.vibration.amplitude_m / units::um; }},
+    {"vibration_um", [](const BlockLine& r) { return r.row.steady.vibration.amplitude_m / units::um; }},
 };
 
 std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
@@ -145,11 +145,13 @@ std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
     }
   };
   add(of_stability);
-  columns.push_back(
-      {"mode", [](const BlockLine& r) { return r.row.cut.mode.known() ? Json(to_string(r.row.cut.mode)) : Json(); }});
-  columns.push_back({"regime", [](const BlockLine& r) { return Json(r.row.cut.regime); }});
+  columns.push_back({"mode", [](const BlockLine& r) {
+                       const modal::ModeId mode = r.row.stability.mode();
+                       return mode.known() ? Json(to_string(mode)) : Json();
+                     }});
+  columns.push_back({"regime", [](const BlockLine& r) { return Json(to_string(r.row.stability.regime)); }});
   add(of_load);
-  columns.push_back({"lower_bound", [](const BlockLine& r) { return Json(r.row.cut.lower_bound); }});
+  columns.push_back({"lower_bound", [](const BlockLine& r) { return Json(r.row.stability.lower_bound); }});
   columns.push_back({"measured_nearby",
                      [](const BlockLine& r) { return r.row.measured_nearby ? Json(*r.row.measured_nearby) : Json(); }});
   columns.push_back({"evaluation", [](const BlockLine& r) { return Json(r.row.evaluation + 1); }});
@@ -216,13 +218,13 @@ std::string block_note(const BlockResult& force, const BlockRow& row) {
   if (force.settled == BlockResult::Settled::lost) return "engagement lost";
   if (!row.cuts) return {};
   if (force.settled == BlockResult::Settled::unsettled) return "deflection does not settle";
-  if (row.cut.below_range) return "unstable at the least depth that was looked at: the limit is no higher";
-  if (row.cut.limit_95_percent_m > hardly_known * row.cut.limit_5_percent_m) {
+  if (row.stability.below_range()) return "unstable at the least depth that was looked at: the limit is no higher";
+  if (row.stability.limit_95_percent_m > hardly_known * row.stability.limit_5_percent_m) {
     return "the limit is hardly known: see its 5 and 95 % quantiles";
   }
-  if (row.cut.lower_bound) return "limit is a lower bound: process damping is not known";
-  if (!std::isfinite(row.cut.limit_depth_m)) {
-    return fmt::format("no limit up to {:.4g} mm", row.cut.searched_depth_m / units::mm);
+  if (row.stability.lower_bound) return "limit is a lower bound: process damping is not known";
+  if (!row.stability.limited()) {
+    return fmt::format("no limit up to {:.4g} mm", row.stability.searched_depth_m[1] / units::mm);
   }
   return {};
 }
@@ -246,13 +248,13 @@ std::vector<std::string> block_warnings(const ForcesResult& forces, const Progra
 
 std::vector<std::string> block_notes(const ProgramBlocks& blocks) {
   std::vector<std::string> out;
-  const auto bounds = std::ranges::count_if(blocks.rows, [](const BlockRow& row) { return row.cut.lower_bound; });
+  const auto bounds = std::ranges::count_if(blocks.rows, [](const BlockRow& row) { return row.stability.lower_bound; });
   if (bounds > 0) {
     out.push_back(fmt::format(
         "{} a lower bound: process damping, which is not known, lifts limits at low speed.",
         bounds == 1 ? "The limit of one block is" : fmt::format("The limit of each of {} blocks is", bounds)));
   }
-  const auto with_error = [](const BlockRow& row) { return std::isfinite(row.cut.surface_error_m); };
+  const auto with_error = [](const BlockRow& row) { return std::isfinite(row.steady.surface_error_m); };
   const auto with_left = [](const BlockRow& row) { return std::isfinite(row.surface_left_m); };
   if (std::ranges::any_of(blocks.rows, with_error) && std::ranges::none_of(blocks.rows, with_left)) {
     out.emplace_back(
@@ -273,10 +275,10 @@ Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
     worst = {{"block", blocks.worst + 1},
              {"line", forces.program->program.blocks[blocks.worst].line},
              {"axial_depth_mm", number(row.axial_depth_m / units::mm)},
-             {"limit_depth_mm", number(row.cut.limit_depth_m / units::mm)},
+             {"limit_depth_mm", number(row.stability.at.limit_depth_m / units::mm)},
              {"stability_margin", number(row.stability_margin)},
-             {"gain_margin", number(row.cut.gain_margin)},
-             {"regime", row.cut.regime}};
+             {"gain_margin", number(row.stability.at.gain_margin)},
+             {"regime", to_string(row.stability.regime)}};
   }
   std::vector<std::string> notes = block_warnings(forces, blocks);
   std::ranges::move(block_notes(blocks), std::back_inserter(notes));
