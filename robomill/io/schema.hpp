@@ -67,7 +67,7 @@ struct TableInfo {
 };
 
 template <class T>
-class Table;
+class Schema;
 
 /// A key of the table of T, with the member that it fills or is written from.
 template <class T>
@@ -311,10 +311,11 @@ template <class T, class Condition>
 
 /// The description of a struct as a table of a document: its keys, in their order.
 template <class T>
-class Table {
+class Schema {
  public:
   /// @param use  Use::written: no default counts, and a key is required that is written of every object
-  Table(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read) : rows_(std::move(rows)) {
+  Schema(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read)
+      : rows_(std::move(rows)) {
     info_.name = std::move(name);
     info_.meaning = std::move(meaning);
     info_.keys.reserve(rows_.size());
@@ -364,7 +365,7 @@ class Table {
 
 /// A key that holds another table.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, U T::*member, const Table<U>& table, std::string meaning) {
+[[nodiscard]] Row<T> key(std::string name, U T::*member, const Schema<U>& table, std::string meaning) {
   Row<T> row{
       .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
@@ -376,7 +377,7 @@ template <class T, class U>
 
 /// A key that holds a list of tables.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, std::vector<U> T::*member, const Table<U>& table, std::string meaning) {
+[[nodiscard]] Row<T> key(std::string name, std::vector<U> T::*member, const Schema<U>& table, std::string meaning) {
   Row<T> row{.key = {.name = std::move(name),
                      .holds = Holds::table,
                      .lists = 1,
@@ -398,7 +399,7 @@ template <class T, class U>
 
 /// A table that may be absent.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, std::optional<U> T::*member, const Table<U>& table, std::string meaning) {
+[[nodiscard]] Row<T> key(std::string name, std::optional<U> T::*member, const Schema<U>& table, std::string meaning) {
   Row<T> row{
       .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
@@ -412,7 +413,7 @@ template <class T, class U>
 
 /// A table that a pointer of the object leads to; left out where that is null. Written only.
 template <class T, class U>
-[[nodiscard]] Row<T> part(std::string name, const U* T::*member, const Table<U>& table, std::string meaning) {
+[[nodiscard]] Row<T> part(std::string name, const U* T::*member, const Schema<U>& table, std::string meaning) {
   Row<T> row{
       .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
   row.write = [member, &table](const T& object, const Row<T>&) {
@@ -440,7 +441,7 @@ template <class T, class U, class Part>
 /// lobes names itself "lobes/1", in its key `document`.
 template <class T>
 struct Document {
-  const Table<T>& table;
+  const Schema<T>& table;
   int version = 1;
   [[nodiscard]] std::string name() const { return table.info().name + "/" + std::to_string(version); }
   [[nodiscard]] Json write(const T& object) const {

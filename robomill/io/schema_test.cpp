@@ -30,16 +30,16 @@ struct Tool {
   std::string name = {};
 };
 
-const Table<Mode>& mode_table() {
-  static const Table<Mode> table(
+const Schema<Mode>& mode_table() {
+  static const Schema<Mode> table(
       "mode", "a mode of the tip",
       {key("frequency_hz", &Mode::frequency_hz, "natural frequency").above(0.0).required("From a tap test"),
        key("damping_ratio", &Mode::damping_ratio, "share of critical").above(0.0).below(1.0)});
   return table;
 }
 
-const Table<Tool>& tool_table() {
-  static const Table<Tool> table(
+const Schema<Tool>& tool_table() {
+  static const Schema<Tool> table(
       "tool", "the cutter",
       {key("teeth", &Tool::teeth, "cutting edges").at_least(1.0).required(),
        key("diameter_mm", &Tool::diameter_m, "over the edges").above(0.0).required("On its drawing"),

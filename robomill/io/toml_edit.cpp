@@ -36,10 +36,10 @@ void find_inner_lines(const toml::node& node, std::set<std::size_t>& lines) {
 }
 
 /// The part after the last dot, and what stands before it.
-struct Name {
+struct KeyName {
   std::string_view table, last;
 };
-Name name_of(std::string_view key) {
+KeyName name_of(std::string_view key) {
   const std::size_t dot = key.rfind('.');
   if (dot == std::string_view::npos) return {.table = {}, .last = key};
   return {.table = key.substr(0, dot), .last = key.substr(dot + 1)};
@@ -190,7 +190,7 @@ class Editor {
 
   std::string_view document_;
   const TomlSetting& setting_;
-  Name name_;
+  KeyName name_;
   toml::table root_;
   TextPlaces places_;
   std::vector<std::string_view> lines_;  ///< each with its end

@@ -9,7 +9,7 @@ using io::Json;
 using io::key;
 using io::of;
 using io::Row;
-using io::Table;
+using io::Schema;
 
 constexpr Name<CutterKind> kinds[] = {{"flat-end", CutterKind::flat_end},
                                       {"ball-end", CutterKind::ball_end},
@@ -38,8 +38,8 @@ Row<FlatEndMill> helix_key() {
 
 }  // namespace
 
-const Table<Cutter>& cutter_table() {
-  static const Table<Cutter> table(
+const Schema<Cutter>& cutter_table() {
+  static const Schema<Cutter> table(
       "tool", "the milling cutter",
       {key("kind", &Cutter::kind, kinds, "shape of the cutter"),
        of(&Cutter::mill, key("teeth", &FlatEndMill::teeth, "cutting edges").at_least(1.0).at_most(100.0)),
@@ -65,8 +65,8 @@ const Table<Cutter>& cutter_table() {
   return table;
 }
 
-const Table<ProcessDamping>& process_damping_table() {
-  static const Table<ProcessDamping> table(
+const Schema<ProcessDamping>& process_damping_table() {
+  static const Schema<ProcessDamping> table(
       "process_damping", "a worn land under the edge that is pressed into the wave",
       {key("indentation_n_per_mm3", &ProcessDamping::indentation_n_per_m3, "specific indentation force of the material")
            .at_least(0.0),
@@ -75,8 +75,8 @@ const Table<ProcessDamping>& process_damping_table() {
   return table;
 }
 
-const Table<SpeedVariation>& speed_variation_table() {
-  static const Table<SpeedVariation> table(
+const Schema<SpeedVariation>& speed_variation_table() {
+  static const Schema<SpeedVariation> table(
       "speed_variation", "the spindle speed swings about its mean",
       {key("amplitude_ratio", &SpeedVariation::amplitude_ratio, "share of the mean").at_least(0.0).at_most(0.9),
        key("frequency_ratio", &SpeedVariation::frequency_ratio, "frequency over that of the rotation").at_least(0.0)});

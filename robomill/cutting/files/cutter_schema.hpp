@@ -5,10 +5,10 @@
 namespace robomill::cutting {
 
 /// [tool] of a milling cutter.
-[[nodiscard]] const io::Table<Cutter>& cutter_table();
+[[nodiscard]] const io::Schema<Cutter>& cutter_table();
 /// [process_damping]
-[[nodiscard]] const io::Table<ProcessDamping>& process_damping_table();
+[[nodiscard]] const io::Schema<ProcessDamping>& process_damping_table();
 /// [speed_variation]
-[[nodiscard]] const io::Table<SpeedVariation>& speed_variation_table();
+[[nodiscard]] const io::Schema<SpeedVariation>& speed_variation_table();
 
 }  // namespace robomill::cutting

@@ -4,15 +4,15 @@ namespace robomill::stability {
 namespace {
 
 using io::key;
-using io::Table;
+using io::Schema;
 
 /// What a chart of a file may hold.
 constexpr Name<Output> outputs[] = {{"boundary", Output::boundary}, {"map", Output::map}};
 
 }  // namespace
 
-const Table<LobesOptions>& chart_options_table() {
-  static const Table<LobesOptions> table(
+const Schema<LobesOptions>& chart_options_table() {
+  static const Schema<LobesOptions> table(
       "lobes", "the stability chart",
       {key("spindle_speed_rpm", &LobesOptions::spindle_speed_rad_per_s, "from, to").above(0.0),
        key("axial_depth_mm", &LobesOptions::axial_depth_m, "from, to").at_least(0.0),
@@ -24,8 +24,8 @@ const Table<LobesOptions>& chart_options_table() {
   return table;
 }
 
-const Table<Uncertainty>& uncertainty_options_table() {
-  static const Table<Uncertainty> table(
+const Schema<Uncertainty>& uncertainty_options_table() {
+  static const Schema<Uncertainty> table(
       "uncertainty", "what is not known exactly: the band of the limit",
       {key("samples", &Uncertainty::samples, "problems drawn").at_least(20.0).at_most(1e6),
        key("grid", &Uncertainty::grid, "speeds and depths").at_least(2.0),

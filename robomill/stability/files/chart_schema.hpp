@@ -6,8 +6,8 @@
 namespace robomill::stability {
 
 /// [lobes] of a chart over the axial depth.
-[[nodiscard]] const io::Table<LobesOptions>& chart_options_table();
+[[nodiscard]] const io::Schema<LobesOptions>& chart_options_table();
 /// [uncertainty]
-[[nodiscard]] const io::Table<Uncertainty>& uncertainty_options_table();
+[[nodiscard]] const io::Schema<Uncertainty>& uncertainty_options_table();
 
 }  // namespace robomill::stability

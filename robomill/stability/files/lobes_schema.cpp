@@ -14,7 +14,7 @@ using io::Holds;
 using io::Json;
 using io::key;
 using io::Row;
-using io::Table;
+using io::Schema;
 using io::Use;
 
 constexpr Name<BifurcationType> kinds[] = {
@@ -46,8 +46,8 @@ void append(std::vector<Row<T>>& rows, std::vector<Row<T>> more) {
   for (Row<T>& row : more) rows.push_back(std::move(row));
 }
 
-const Table<BoundaryPoint>& boundary_table() {
-  static const Table<BoundaryPoint> table(
+const Schema<BoundaryPoint>& boundary_table() {
+  static const Schema<BoundaryPoint> table(
       "boundary_point", "a point at which the spectral radius is 1",
       [] {
         std::vector<Row<BoundaryPoint>> rows = {
@@ -62,8 +62,8 @@ const Table<BoundaryPoint>& boundary_table() {
   return table;
 }
 
-const Table<Limit>& limit_table() {
-  static const Table<Limit> table(
+const Schema<Limit>& limit_table() {
+  static const Schema<Limit> table(
       "limit", "the lowest unstable depth at one speed",
       [] {
         const auto found = [](const Limit& limit) { return limit.status == Limit::Status::found; };
@@ -86,8 +86,8 @@ const Table<Limit>& limit_table() {
   return table;
 }
 
-const Table<PointResult>& point_table() {
-  static const Table<PointResult> table(
+const Schema<PointResult>& point_table() {
+  static const Schema<PointResult> table(
       "point", "a point that was asked for",
       [] {
         const auto known = [](double PointResult::*member) {
@@ -123,8 +123,8 @@ const Table<PointResult>& point_table() {
   return table;
 }
 
-const Table<UncertainLimits>& uncertainty_table() {
-  static const Table<UncertainLimits> table(
+const Schema<UncertainLimits>& uncertainty_table() {
+  static const Schema<UncertainLimits> table(
       "uncertainty", "limits of drawn problems: what is not known exactly",
       {key("samples", &UncertainLimits::samples, "problems drawn"),
        key("spindle_speed_rpm", &UncertainLimits::spindle_speed_rad_per_s, "spindle speeds"),
@@ -139,8 +139,8 @@ const Table<UncertainLimits>& uncertainty_table() {
   return table;
 }
 
-const Table<SurfaceMap>& surface_table() {
-  static const Table<SurfaceMap> table(
+const Schema<SurfaceMap>& surface_table() {
+  static const Schema<SurfaceMap> table(
       "surface", "the surface that stable cuts leave, a row a depth",
       {key("spindle_speed_rpm", &SurfaceMap::spindle_speed_rad_per_s, "spindle speeds"),
        key("axial_depth_mm", &SurfaceMap::axial_depth_m, "axial depths"),
@@ -152,8 +152,8 @@ const Table<SurfaceMap>& surface_table() {
   return table;
 }
 
-const Table<LobesResult>& chart_table() {
-  static const Table<LobesResult> table(
+const Schema<LobesResult>& chart_table() {
+  static const Schema<LobesResult> table(
       "chart", "a stability chart",
       {key("spindle_speed_rpm", &LobesResult::spindle_speed_rad_per_s, "spindle speeds of the grid"),
        key("axial_depth_mm", &LobesResult::axial_depth_m, "axial depths of the grid"),
@@ -174,7 +174,7 @@ const Table<LobesResult>& chart_table() {
 }  // namespace
 
 io::Document<LobesView> lobes_document() {
-  static const Table<LobesView> table(
+  static const Schema<LobesView> table(
       "lobes", "stability lobes: lobes.json",
       [] {
         std::vector<Row<LobesView>> rows = keys_of<LobesView>(
