@@ -105,7 +105,7 @@ TEST(LimitQuantiles, AreThoseOfSampling) {
     if (first.limit.status != Limit::Status::found || first.limit.axial_depth_m < block.depth_m / 8.0) continue;
     ++judged;
     EXPECT_LT(first.limit_5_percent_m, first.limit.axial_depth_m);
-    EXPECT_EQ(first.limit_50_percent_m, first.limit.axial_depth_m);
+    EXPECT_GT(first.limit_95_percent_m, first.limit.axial_depth_m);
     const auto [low_m, high_m] = sampled(block, samples, 5000 + seed);
     const double sigmas = std::log(first.limit_95_percent_m / first.limit_5_percent_m);  // 3.3 of them
     const bool agrees = std::abs(std::log(first.limit_5_percent_m / low_m)) < 0.15 * sigmas + 0.01 &&
