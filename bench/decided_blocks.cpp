@@ -366,7 +366,7 @@ bool judge_loads(const jobs::PlanResult& plan, const Judged& before, const Judge
     limits[slowest].look(i, speed, machine.min_spindle_speed_rad_per_s);
   }
   if (plan.decision->decided->greatest_torque_share > 0.0) {
-    limits[joints].look(plan.blocks->worst, plan.decision->decided->greatest_torque_share, 1.0);
+    limits[joints].look(plan.decided->blocks->worst, plan.decision->decided->greatest_torque_share, 1.0);
   }
   fmt::print(
       "\n| limit | worst | allowed | used, % | in block | blocks beyond by over {:.1f} % |\n"
@@ -384,11 +384,12 @@ bool judge_loads(const jobs::PlanResult& plan, const Judged& before, const Judge
 
 /// Prints what the check of every sample found. Whether it found no violation.
 bool judge_path(const jobs::PlanResult& plan) {
-  if (!plan.path) {
+  const std::optional<process::SmoothResult>& path = plan.decided->path;
+  if (!path) {
     fmt::print("\nNo trajectory: the cell has no [smoothing].\n");
     return true;
   }
-  const path::CheckResult& check = plan.path->first().summary.check;
+  const path::CheckResult& check = path->first().summary.check;
   fmt::print("\nTrajectory: {:.2f} s, {} samples, {} violations of limits.\n", check.duration_s, check.samples,
              check.violations());
   const auto used = [](const path::Usage& usage) { return usage.limit > 0.0 ? 100.0 * usage.max / usage.limit : 0.0; };
@@ -406,7 +407,7 @@ bool judge_path(const jobs::PlanResult& plan) {
       joint[0], joint[1], joint[2], used(check.tip_velocity), used(check.tip_acceleration), used(check.tip_jerk),
       used(check.axis_velocity), used(check.axis_acceleration), used(check.axis_jerk), used(check.feed),
       used(check.tip_error_m), used(check.axis_error_rad));
-  return plan.path->holds();
+  return path->holds();
 }
 
 /// The job's program as it is, run and judged as a plan does before it decides.
@@ -414,13 +415,14 @@ void run_as_programmed(const cell::CellFile& cell, const process::DynamicsAt& dy
   process::ProgramRun run = {.keep_cuts = true, .deflect = true};
   std::optional<program::ProgramReading> reading;
   if (path::has_smoothing(*cell.document)) {
-    plan.path = jobs::run_smooth({.program = plan.job.program, .cell = cell.path, .options = {.place = false}}, cell);
-    reading = plan.path->reading;
-    run.joints = plan.path->block_joints;
+    std::optional<process::SmoothResult>& path = plan.programmed.path;
+    path = jobs::run_smooth({.program = plan.job.program, .cell = cell.path, .options = {.place = false}}, cell);
+    reading = path->reading;
+    run.joints = path->block_joints;
   }
-  plan.forces = jobs::run_forces_along(process::read_forces(plan.job.forces, process::ForcesJob::program),
-                                       plan.job.program, cell, run, reading);
-  plan.blocks = process::judge_blocks(*plan.forces, dynamics, {.scan_points = 0});
+  plan.programmed.forces = jobs::run_forces_along(process::read_forces(plan.job.forces, process::ForcesJob::program),
+                                                  plan.job.program, cell, run, reading);
+  plan.programmed.blocks = process::judge_blocks(*plan.programmed.forces, dynamics, {.scan_points = 0});
 }
 
 Settings read(int argc, char** argv) {
@@ -450,19 +452,19 @@ int run(const Settings& settings) {
   constexpr std::array<bool, 3> pushed{true, true, true};  // it chooses warnings alone, which nobody reads here
   const process::DynamicsAt dynamics = process::dynamics_of_cell(cell, pushed, plan.warnings, plan.notes, plan.assumed);
   run_as_programmed(cell, dynamics, plan);
-  const process::ForcesResult forces = *plan.forces;
-  const process::ProgramBlocks blocks = *plan.blocks;
   jobs::decide_conditions(plan, cell, dynamics, {.scan_points = 0}, {}, Progress::none());
-  if (plan.decision->status != process::DecideResult::Status::found) {
+  if (plan.decision->status != process::Decision::Status::found) {
     fmt::print("No conditions were decided: {}\n", plan.decision->reason);
     return 1;
   }
-  const std::array<Judged, 2> programs{{{forces, blocks}, {*plan.forces, *plan.blocks}}};
+  const process::ProgramBlocks& before = *plan.programmed.blocks;
+  const process::ProgramBlocks& after = *plan.decided->blocks;
+  const std::array<Judged, 2> programs{{{*plan.programmed.forces, before}, {*plan.decided->forces, after}}};
   fmt::print(
       "{}: {} blocks that cut. As programmed {:.2f} s of cutting, {} unstable; as decided {:.2f} s, {}, least "
       "margin {:.3f}.\n\n",
-      settings.job.string(), plan.blocks->cutting, plan.decision->as_programmed.cutting_time_s, blocks.unstable,
-      plan.decision->decided->cutting_time_s, plan.blocks->unstable, plan.decision->decided->least_stability_margin);
+      settings.job.string(), after.cutting, plan.decision->as_programmed.cutting_time_s, before.unstable,
+      plan.decision->decided->cutting_time_s, after.unstable, plan.decision->decided->least_stability_margin);
   const bool stable = judge_in_time(programs, dynamics, settings);
   const bool path = judge_path(plan);
   const bool loads = judge_loads(plan, programs[0], programs[1]);

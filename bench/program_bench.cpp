@@ -59,16 +59,16 @@ void whole_program(benchmark::State& state) {
   double seconds = 0.0;
   for (auto _ : state) {
     const jobs::PlanResult result = jobs::run_job(hollow.job(), 1);
-    if (!result.blocks || !result.forces || !result.forces->program) {
+    if (!result.shown().blocks || !result.shown().forces || !result.shown().forces->program) {
       state.SkipWithError("no blocks were judged");
       return;
     }
-    const double blocks = static_cast<double>(result.blocks->rows.size());
-    seconds = result.blocks->seconds + result.forces->program->seconds;
+    const double blocks = static_cast<double>(result.shown().blocks->rows.size());
+    seconds = result.shown().blocks->seconds + result.shown().forces->program->seconds;
     state.counters["blocks"] = blocks;
-    state.counters["evaluations"] = static_cast<double>(result.blocks->evaluations);
-    state.counters["forces_s"] = result.forces->program->seconds;
-    state.counters["stability_s"] = result.blocks->seconds;
+    state.counters["evaluations"] = static_cast<double>(result.shown().blocks->evaluations);
+    state.counters["forces_s"] = result.shown().forces->program->seconds;
+    state.counters["stability_s"] = result.shown().blocks->seconds;
     state.counters["ms_a_block"] = 1e3 * seconds / blocks;
   }
   if (smaller_seconds > 0.0) {

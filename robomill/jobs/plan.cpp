@@ -148,7 +148,7 @@ void warn_of_spindle(PlanResult& result) {
   std::size_t weak = 0;
   process::SpindleLoad worst;
   double most = 0.0;
-  for (const process::SpindleLoad& load : process::spindle_loads(*result.forces)) {
+  for (const process::SpindleLoad& load : process::spindle_loads(*result.shown().forces)) {
     const decision::SpindleCapacity able = decision::capacity_at(curve, load.spindle_speed_rad_per_s);
     const bool inside = able.torque_n_m > 0.0 && able.power_w > 0.0;
     const double share = inside ? std::max(load.torque_n_m / able.torque_n_m, load.power_w / able.power_w) : HUGE_VAL;
@@ -167,7 +167,7 @@ void warn_of_spindle(PlanResult& result) {
   result.warnings.push_back(fmt::format(
       "The cut asks for more than the spindle has, {}{:.3g} N·m over a revolution and {:.3g} kW over {:.3g} s at "
       "{:.0f} rpm; {}.",
-      place, worst.torque_n_m, worst.power_w / units::kw, result.forces->cut.power_time_s,
+      place, worst.torque_n_m, worst.power_w / units::kw, result.shown().forces->cut.power_time_s,
       worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
@@ -210,13 +210,13 @@ void smooth(PlanResult& result, const cell::CellFile& cell, const std::filesyste
   if (cell.geometry && !result.job.forces.empty()) {
     smooth.options.cutter = process::read_forces(result.job.forces, process::ForcesJob::program).cutter;
   }
-  result.path = run_smooth(smooth, cell, progress);
+  result.programmed.path = run_smooth(smooth, cell, progress);
 }
 
 /// Of the program that is to run, as it was or as it was decided.
 void warn_of_path(PlanResult& result) {
-  if (!result.path || result.path->holds()) return;
-  const process::SmoothResult& path = *result.path;
+  if (!result.shown().path || result.shown().path->holds()) return;
+  const process::SmoothResult& path = *result.shown().path;
   const char* removed = path.stale ? ", and the one of an earlier run was removed" : "";
   if (!path.clear()) {
     result.warnings.push_back(fmt::format("There is no trajectory{}. On its way {}.", removed,
@@ -232,11 +232,12 @@ void warn_of_path(PlanResult& result) {
 process::ForcesResult forces_along(const PlanResult& result, const process::ForcesFile& file,
                                    const std::optional<cell::CellFile>& cell, Progress& progress) {
   process::ProgramRun run = {.keep_cuts = true, .deflect = true};
-  if (!result.path || result.path->block_joints.empty()) {
+  const std::optional<process::SmoothResult>& path = result.programmed.path;
+  if (!path || path->block_joints.empty()) {
     return run_forces_along(file, result.job.program, cell, run, {}, progress);
   }
-  run.joints = result.path->block_joints;
-  return run_forces_along(file, result.job.program, cell, run, result.path->reading, progress);
+  run.joints = path->block_joints;
+  return run_forces_along(file, result.job.program, cell, run, path->reading, progress);
 }
 
 /// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
@@ -248,7 +249,7 @@ process::DynamicsAt dynamics_along(PlanResult& result, const cell::Cell& cell, P
                               .key = "postures",
                               .file = cell.path.filename().string()});
   };
-  if (!result.forces->cut.dynamics.modes.empty()) {
+  if (!result.programmed.forces->cut.dynamics.modes.empty()) {
     result.notes.emplace_back("[dynamics] of forces.toml takes no part in the stability of the program's blocks.");
   }
   if (!cell.postures.empty() || !result.job.has_structure()) {
@@ -258,8 +259,8 @@ process::DynamicsAt dynamics_along(PlanResult& result, const cell::Cell& cell, P
     } else if (cell.postures.empty()) {
       assume("those of the cell's arm alone; nothing was measured");
     }
-    return process::dynamics_of_cell(cell, process::pushed_axes(*result.forces), result.warnings, result.notes,
-                                     result.assumed, progress);
+    return process::dynamics_of_cell(cell, process::pushed_axes(*result.programmed.forces), result.warnings,
+                                     result.notes, result.assumed, progress);
   }
   assume("the job's, the same in every posture, in the robot's base axes");
   return process::constant_dynamics(result.model);
@@ -273,9 +274,9 @@ void judge(PlanResult& result, const cell::Cell& cell, const std::filesystem::pa
                                                                 !cut.problem.workpiece_dynamics.modes.empty()};
   const process::DynamicsAt dynamics = dynamics_along(result, cell, progress);
   result.judging = {.dynamics = dynamics, .options = options};
-  result.blocks = process::judge_blocks(*result.forces, dynamics, options, progress);
+  result.programmed.blocks = process::judge_blocks(*result.programmed.forces, dynamics, options, progress);
   if (result.job.decide.free.empty()) return;
-  if (result.blocks->cutting == 0) {
+  if (result.programmed.blocks->cutting == 0) {
     result.notes.emplace_back("No block of the program cuts: there are no conditions to decide.");
     return;
   }
@@ -292,13 +293,17 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
   if (result.recommends()) append(result.warnings, contradictions(result.cut, file));
   append(result.warnings, contradictions(result.job, file));
   if (!result.job.judges_blocks()) {
-    result.forces = run_forces(file, result.job.program, cell, progress);
+    result.programmed.forces = run_forces(file, result.job.program, cell, progress);
   } else {
-    result.forces = forces_along(result, file, cell, progress);
+    result.programmed.forces = forces_along(result, file, cell, progress);
   }
   const bool usable = !result.fit || result.fit->usable();
   if (result.job.judges_blocks() && usable) judge(result, *cell, folder, progress);
-  result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
+  const auto add_capacity = [&](process::ForcesResult& forces) {
+    forces.spindle = capacity_along(forces, result.job.recommend.spindle);
+  };
+  add_capacity(*result.programmed.forces);
+  if (result.decided) add_capacity(*result.decided->forces);
   warn_of_spindle(result);
 }
 
@@ -376,26 +381,28 @@ PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed, P
 }
 
 process::JudgedProgram judged_program(const PlanResult& result) {
-  if (!result.forces || !result.blocks || !result.judging || !result.forces->cell || !result.forces->program) {
+  const PlannedProgram& shown = result.shown();
+  if (!shown.forces || !shown.blocks || !result.judging || !shown.forces->cell || !shown.forces->program) {
     throw InvalidInput("plan", "must be of a job with forces, a cell and a program whose blocks were judged");
   }
-  process::JudgedProgram out = {.forces = *result.forces, .blocks = *result.blocks, .judging = *result.judging};
-  // Forces, joints and blocks are those of the decided program, which is turned already.
-  if (result.decision) out.gamma_offset_rad = result.decision->gamma_offset_rad;
+  process::JudgedProgram out = {.forces = *shown.forces, .blocks = *shown.blocks, .judging = *result.judging};
+  // The decided program is turned already.
+  if (result.decided) out.gamma_offset_rad = result.decision->gamma_offset_rad;
   if (result.decision && result.decision->gamma_map) out.map_blocks = result.decision->gamma_map->block;
   return out;
 }
 
 bool collisions_checked(const PlanResult& result) {
-  if (result.path) return result.path->smoothed.clearance.has_value();
+  if (result.shown().path) return result.shown().path->smoothed.clearance.has_value();
   return result.decision && result.decision->collisions_checked;
 }
 
 bool reached(const PlanResult& result) {
   if (result.decision && !result.decision->collision.empty()) return false;
-  if (result.decision && result.decision->status == process::DecideResult::Status::infeasible) return false;
-  if (result.path && !result.path->holds()) return false;
-  if (result.blocks && !result.recommends()) return true;  // an unstable block is an answer
+  if (result.decision && result.decision->status == process::Decision::Status::infeasible) return false;
+  const PlannedProgram& shown = result.shown();
+  if (shown.path && !shown.path->holds()) return false;
+  if (shown.blocks && !result.recommends()) return true;  // an unstable block is an answer
   return result.recommendation.status == decision::Recommendation::Status::found;
 }
 

@@ -49,6 +49,20 @@ struct PlannedMonitor {
   std::string modes_json = {};  ///< monitor_modes.json; empty where no modes are planned
 };
 
+/// A program with what the job found of it. What the job did not ask for is empty.
+struct PlannedProgram {
+  std::optional<process::ForcesResult> forces = {};   ///< of a job without a program, over one revolution
+  std::optional<process::ProgramBlocks> blocks = {};  ///< of a job with forces, a cell and a program
+  std::optional<process::SmoothResult> path = {};     ///< of a job with a program and a cell with [smoothing]
+};
+
+/// A program at the conditions that were decided.
+struct DecidedProgram : PlannedProgram {
+  std::optional<program::Rewritten> text = {};  ///< in its dialect; none: on its way it strikes something
+  std::string name = {};                        ///< of its file
+  std::optional<PlannedMonitor> monitor = {};   ///< none where there is no text
+};
+
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
   Job job;
@@ -65,21 +79,17 @@ struct PlanResult {
   std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
   std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
-  std::optional<process::ForcesResult> forces;    ///< of a job that asks for them
-  std::optional<process::ProgramBlocks> blocks;   ///< of a job with forces, a cell and a program
-  std::optional<process::BlocksJudging> judging;  ///< … how they were judged
-  /// Of a job that judges blocks and leaves something free. Where it found conditions, forces, blocks and path are
-  /// those of the decided program.
-  std::optional<process::DecideResult> decision;
-  std::optional<program::Rewritten> program_out;  ///< the decided program in its dialect
-  std::string program_name;                       ///< … and its file's name
-  std::optional<PlannedMonitor> monitor;          ///< of that program
-  std::optional<process::SmoothResult> path;      ///< of a job with a program and a cell with [smoothing]
+  PlannedProgram programmed;                      ///< the program as it is
+  std::optional<process::BlocksJudging> judging;  ///< how its blocks were judged
+  std::optional<process::Decision> decision;      ///< of a job that judges blocks and leaves something free
+  std::optional<DecidedProgram> decided;          ///< where the decision found conditions
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
   std::vector<Assumption> assumed;  ///< of all stages
 
+  /// The program whose numbers documents show: as decided, where it was, else as it is.
+  [[nodiscard]] const PlannedProgram& shown() const { return decided ? *decided : programmed; }
   [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
   /// Whether the job chooses depth and speed; else it judges the blocks of its program alone.
   [[nodiscard]] bool recommends() const { return !job.lobes.empty(); }
@@ -108,7 +118,7 @@ inline constexpr std::uint64_t default_seed = 1;
 [[nodiscard]] ROBOMILL_API PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed,
                                                     Progress& progress = Progress::none());
 
-/// The blocks of a plan's program, for judge_turned. They refer to the plan.
+/// The blocks of the program that the plan shows, for judge_turned. They refer to the plan.
 /// @throws InvalidInput if the plan has no judged blocks
 [[nodiscard]] ROBOMILL_API process::JudgedProgram judged_program(const PlanResult& result);
 

@@ -23,9 +23,10 @@ void gather_assumed(PlanResult& result, const cell::Cell* cell) {
   add_assumed(result.assumed, io::sample_values(result.job.file));
   add_assumed(result.assumed, of_job);
   if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
-  if (result.forces) add_assumed(result.assumed, result.forces->assumed);
-  if (result.path) add_assumed(result.assumed, result.path->smoothed.assumed);
-  if (cell != nullptr && result.blocks && !cell->end_effector.mass_kg && process::knows_torques(*cell)) {
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) add_assumed(result.assumed, shown.forces->assumed);
+  if (shown.path) add_assumed(result.assumed, shown.path->smoothed.assumed);
+  if (cell != nullptr && shown.blocks && !cell->end_effector.mass_kg && process::knows_torques(*cell)) {
     // What the drives bear is looked at, without the spindle's weight.
     add_assumed(result.assumed, {{.what = "Mass on the flange",
                                   .taken = "none",

@@ -23,13 +23,13 @@
 namespace robomill::jobs {
 namespace {
 
-bool leans(const process::DecideResult& decision) {
+bool leans(const process::Decision& decision) {
   return std::ranges::any_of(decision.stretches, [](const process::DecidedLines& lines) {
     return lines.lead_rad != 0.0 || lines.tilt_rad != 0.0;
   });
 }
 
-bool turns(const process::DecideResult& decision) {
+bool turns(const process::Decision& decision) {
   return std::ranges::any_of(decision.gamma_offset_rad, [](double turn) { return turn != 0.0; });
 }
 
@@ -38,8 +38,9 @@ enum class Checked { block_ends, trajectory };
 
 std::string checked_text(const PlanResult& result, Checked checked) {
   const bool smoothed = checked == Checked::trajectory;
-  if (smoothed && result.path->smoothed.clearance) {
-    const path::PathClearance& way = *result.path->smoothed.clearance;
+  const std::optional<process::SmoothResult>& path = result.decided->path;
+  if (smoothed && path->smoothed.clearance) {
+    const path::PathClearance& way = *path->smoothed.clearance;
     return fmt::format("The whole trajectory was checked against the cell's geometry: {}{}", path::clearance_text(way),
                        way.covers_moves() ? "" : ". That is too far to exclude a collision between them");
   }
@@ -52,7 +53,7 @@ std::string checked_text(const PlanResult& result, Checked checked) {
 }
 
 std::vector<std::string> header_of(const PlanResult& result, Checked checked) {
-  const process::DecideResult& decision = *result.decision;
+  const process::Decision& decision = *result.decision;
   std::vector<std::string> out = {
       fmt::format("Spindle speeds and feeds by robomill {}, from {}", ROBOMILL_VERSION,
                   result.job.program.filename().string()),
@@ -74,14 +75,21 @@ std::vector<std::string> header_of(const PlanResult& result, Checked checked) {
 
 /// As the blocks were numbered: as the smoothed path read them, where there is one.
 program::ProgramReading reading_of(const PlanResult& result, const cell::Cell& cell) {
-  return result.path ? result.path->reading : cell::program_reading(cell);
+  return result.programmed.path ? result.programmed.path->reading : cell::program_reading(cell);
+}
+
+std::string program_name(const Job& job) {
+  return "program" + job.program.extension().string();
+}
+
+const program::Program& program_of(const PlannedProgram& planned) {
+  return planned.forces->program->program;
 }
 
 void write_program(PlanResult& result, const cell::Cell& cell, Checked checked) {
-  result.program_out =
-      program::rewrite_program(result.job.program, reading_of(result, cell), result.forces->program->program,
-                               *result.decision->program, header_of(result, checked));
-  result.program_name = "program" + result.job.program.extension().string();
+  result.decided->text =
+      program::rewrite_program(result.job.program, reading_of(result, cell), program_of(result.programmed),
+                               program_of(*result.decided), header_of(result, checked));
 }
 
 /// A program as its text says it, for a robot that is to run it.
@@ -158,16 +166,17 @@ path::Posture posture_of(const process::SmoothResult& smoothed, const WrittenPro
 /// The decided program as the robot will run it.
 void smooth_decided(PlanResult& result, const cell::Cell& cell, const std::filesystem::path& folder,
                     Progress& progress) {
-  const process::DecideResult& decision = *result.decision;
-  const WrittenProgram written(result.program_name, result.program_out->text, reading_of(result, cell),
-                               *decision.program);
+  const process::SmoothResult& before = *result.programmed.path;
+  DecidedProgram& decided = *result.decided;
+  const program::Program& wanted = program_of(decided);
+  const WrittenProgram written(decided.name, decided.text->text, reading_of(result, cell), wanted);
   process::SmoothOptions options = {
       .place = false,
-      .posture = posture_of(*result.path, written, *decision.program, decision.gamma_offset_rad, cell),
-      .cutter = result.forces->cut.cutter};
+      .posture = posture_of(before, written, wanted, result.decision->gamma_offset_rad, cell),
+      .cutter = decided.forces->cut.cutter};
   if (!folder.empty()) options.output = folder / "trajectory.csv";
   program::ProgramSource source(written.read());
-  result.path = process::smooth(source, result.program_name, cell, result.path->smoothing, options, progress);
+  decided.path = process::smooth(source, decided.name, cell, before.smoothing, options, progress);
 }
 
 /// A program that was run and judged, turned by γ.
@@ -181,18 +190,19 @@ struct TurnedRun {
 process::RobotRun robot_run(const PlanResult& result, const cell::Cell& cell, const TurnedRun& run,
                             Progress& progress) {
   const program::Program& program = run.forces.program->program;
-  const std::string name = "program" + result.job.program.extension().string();
+  const std::string name = program_name(result.job);
   const program::ProgramReading reading = reading_of(result, cell);
   const program::Rewritten text =
-      program::rewrite_program(result.job.program, reading, result.forces->program->program, program);
+      program::rewrite_program(result.job.program, reading, program_of(result.programmed), program);
   const WrittenProgram written(name, text.text, reading, program);
-  const path::SmoothingFile& smoothing = result.path->smoothing;
+  const process::SmoothResult& before = *result.programmed.path;
+  const path::SmoothingFile& smoothing = before.smoothing;
   std::optional<process::MotionLoads> loads;
   if (process::knows_torques(cell)) loads.emplace(cell, smoothing.options.sample_period_s, written.block_of());
   process::BlockTimes times(written.block_of());
   const process::SmoothOptions options = {.record = false,
                                           .place = false,
-                                          .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
+                                          .posture = posture_of(before, written, program, run.gamma_rad, cell),
                                           .check_collisions = false,
                                           .observe = [&](std::span<const path::Sample> samples) {
                                             times.add(samples);
@@ -208,14 +218,15 @@ process::RobotRun robot_run(const PlanResult& result, const cell::Cell& cell, co
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.
 PlannedMonitor monitor_of(const PlanResult& result, const process::DynamicsAt& dynamics) {
-  const program::Program& program = *result.decision->program;
-  MonitorPlan plan = {.teeth = result.forces->cut.cutter.mill.teeth};
+  const DecidedProgram& decided = *result.decided;
+  const program::Program& program = program_of(decided);
+  MonitorPlan plan = {.teeth = decided.forces->cut.cutter.mill.teeth};
   for (const process::DecidedLines& lines : result.decision->stretches) {
     plan.speeds.push_back({.spindle_speed_rad_per_s = lines.spindle_speed_rad_per_s,
                            .line = static_cast<int>(program.blocks[lines.first_block].line)});
   }
-  const std::size_t worst = result.blocks->worst;
-  plan.modes = dynamics(result.forces->program->blocks[worst].joints).modes;
+  const std::size_t worst = decided.blocks->worst;
+  plan.modes = dynamics(decided.forces->program->blocks[worst].joints).modes;
   plan.modes_line = static_cast<int>(program.blocks[worst].line);
   return plan_monitor(plan);
 }
@@ -226,6 +237,21 @@ void withdraw(process::SmoothResult& path) {
   path.smoothed.written = false;
   std::error_code ignored;
   path.stale = !path.output.empty() && std::filesystem::is_regular_file(path.output, ignored);
+}
+
+/// What is known once the decided program is smoothed: its time, whether its way is free, and what watches it.
+void finish_decided(PlanResult& result, const process::DynamicsAt& dynamics) {
+  DecidedProgram& decided = *result.decided;
+  if (decided.path) result.decision->decided->robot_time_s = decided.path->first().summary.duration_s;
+  const std::string& collision = result.decision->collision;
+  const bool strikes = decided.path && !decided.path->clear();
+  if (collision.empty() && !strikes) {
+    decided.monitor = monitor_of(result, dynamics);
+    return;
+  }
+  decided.text.reset();
+  if (decided.path) withdraw(*decided.path);
+  if (!strikes) result.warnings.push_back("There is no program: on its way " + collision + ".");
 }
 
 /// A spindle that a robot program switches on by an output runs at one speed: the one that its drive is set to.
@@ -249,8 +275,8 @@ void take_one_speed(const cell::Cell& cell, process::DecideOptions& options, Pla
 
 void decide_conditions(PlanResult& result, const cell::Cell& cell, const process::DynamicsAt& dynamics,
                        const process::BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress) {
-  process::DecideProblem problem = {.forces = *result.forces,
-                                    .blocks = *result.blocks,
+  process::DecideProblem problem = {.forces = *result.programmed.forces,
+                                    .blocks = *result.programmed.blocks,
                                     .dynamics = dynamics,
                                     .blocks_options = blocks,
                                     .machine = result.job.recommend,
@@ -259,36 +285,29 @@ void decide_conditions(PlanResult& result, const cell::Cell& cell, const process
   if (cell.end_effector.spindle.given() && problem.options.is_free(process::Free::spindle_speed)) {
     take_one_speed(cell, problem.options, result);
   }
-  if (result.path) {
-    problem.max_tip_speed_m_per_s = result.path->smoothing.options.max_velocity_m_per_s;
+  std::optional<process::SmoothResult>& before = result.programmed.path;
+  if (before) {
+    problem.max_tip_speed_m_per_s = before->smoothing.options.max_velocity_m_per_s;
     problem.robot_run = [&](const process::ForcesResult& run, const process::ProgramBlocks& judged,
                             const std::vector<double>& gamma_offset_rad) {
       return robot_run(result, cell, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad}, progress);
     };
   }
-  result.decision = process::decide(problem, progress);
-  if (result.decision->status != process::DecideResult::Status::found) {
-    if (result.path) withdraw(*result.path);
-    return;
+  process::DecideResult found = process::decide(problem, progress);
+  if (found.forces) {
+    result.decided.emplace();
+    result.decided->forces = std::move(found.forces);
+    result.decided->blocks = std::move(found.blocks);
+    result.decided->name = program_name(result.job);
   }
-  write_program(result, cell, Checked::block_ends);
-  if (result.path) {
-    smooth_decided(result, cell, folder, progress);
-    write_program(result, cell, Checked::trajectory);  // the same lines, whose head now says what was checked
-    result.decision->decided->robot_time_s = result.path->first().summary.duration_s;
+  result.decision = static_cast<process::Decision&&>(found);
+  if (result.decided) {
+    write_program(result, cell, Checked::block_ends);
+    if (before) smooth_decided(result, cell, folder, progress);
+    if (before) write_program(result, cell, Checked::trajectory);  // the same lines, whose head says what was checked
+    finish_decided(result, dynamics);
   }
-  const bool collides = !result.decision->collision.empty() || (result.path && !result.path->clear());
-  if (collides) {
-    // No file of a way that strikes something.
-    result.program_out.reset();
-    if (result.path) withdraw(*result.path);
-    if (!result.path || result.path->clear()) {
-      result.warnings.push_back("There is no program: on its way " + result.decision->collision + ".");
-    }
-  }
-  result.forces = *std::exchange(result.decision->forces, std::nullopt);
-  result.blocks = *std::exchange(result.decision->blocks, std::nullopt);
-  if (!collides) result.monitor = monitor_of(result, dynamics);
+  if (before) withdraw(*before);
 }
 
 }  // namespace robomill::jobs

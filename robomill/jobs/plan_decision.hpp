@@ -6,9 +6,8 @@
 
 namespace robomill::jobs {
 
-/// Decides the conditions of the job's program, judged already, and puts the decided program in the place of the one
-/// that was read: forces, blocks, the trajectory and the program's text. Where no conditions keep every limit there is
-/// neither text nor trajectory.
+/// Decides the conditions of the job's program, judged already: `decision`, and where it found conditions `decided`.
+/// The program as it is loses its trajectory.
 /// @param folder  as of run_job
 void decide_conditions(PlanResult& result, const cell::Cell& cell, const process::DynamicsAt& dynamics,
                        const process::BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress);

@@ -111,11 +111,12 @@ page::Report report_of(const PlanResult& result, const std::vector<page::StageFi
   if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
   if (result.has_lobes()) report.lobes = io::dump(plan.at("lobes"));
   if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
-  if (result.forces) report.forces = io::dump(plan.at("forces"));
-  if (result.blocks) report.blocks = process::blocks_json(*result.forces, *result.blocks);
-  if (result.path) {
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) report.forces = io::dump(plan.at("forces"));
+  if (shown.blocks) report.blocks = process::blocks_json(*shown.forces, *shown.blocks);
+  if (shown.path) {
     report.smooth = io::dump(plan.at("path"));
-    report.motion = path::motion_json(result.path->outline, result.path->motions);
+    report.motion = path::motion_json(shown.path->outline, shown.path->motions);
   }
   report.assumed = result.assumed;
   report.files = files;

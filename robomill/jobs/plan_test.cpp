@@ -346,7 +346,7 @@ radial_n_per_mm2 = 287
       "forces = \"forces.toml\"\n[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 0.1, "
       "power_kw = 0.1 }, { speed_rpm = 9000, torque_n_m = 0.1, power_kw = 0.1 }]\n";
   const PlanResult result = run_job(job(weak), 1);
-  ASSERT_TRUE(result.forces && result.forces->revolution);
+  ASSERT_TRUE(result.programmed.forces && result.programmed.forces->revolution);
   const auto warned = std::ranges::count_if(result.warnings, [](const std::string& warning) {
     return warning.find("more than the spindle has") != std::string::npos;
   });

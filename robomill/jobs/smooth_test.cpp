@@ -333,11 +333,11 @@ method = "zeroth-order"
 TEST_F(PlanPath, AddsTheTrajectoryToTheJob) {
   const PlanResult result =
       run_job(plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n"), 1, Progress::none(), folder_.at("out"));
-  ASSERT_TRUE(result.path && result.path->holds());
+  ASSERT_TRUE(result.shown().path && result.shown().path->holds());
   write_plan(folder_.at("out"), result);
   const auto json = nlohmann::json::parse(io::read_file(folder_.at("out") / "plan.json"));
-  EXPECT_EQ(json["path"]["samples"], result.path->first().summary.samples);
-  EXPECT_EQ(read(folder_.at("out") / "trajectory.csv").rows.size(), result.path->first().summary.samples);
+  EXPECT_EQ(json["path"]["samples"], result.shown().path->first().summary.samples);
+  EXPECT_EQ(read(folder_.at("out") / "trajectory.csv").rows.size(), result.shown().path->first().summary.samples);
   EXPECT_EQ(nlohmann::json::parse(io::read_file(folder_.at("out") / "smooth.json")), json["path"]);
   EXPECT_NE(io::read_file(folder_.at("out") / "report.html").find("\"smooth\":{"), std::string::npos);
 }

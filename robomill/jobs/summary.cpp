@@ -216,7 +216,7 @@ void add_blocks(std::string& out, const process::ForcesResult& forces, const pro
 constexpr std::size_t most_rejected = 6;
 
 void add_decision(std::string& out, const PlanResult& result) {
-  const process::DecideResult& decision = *result.decision;
+  const process::Decision& decision = *result.decision;
   const process::Outcome& before = decision.as_programmed;
   const auto rpm = [](const process::Outcome& o) {
     const double low = o.lowest_spindle_speed_rad_per_s / units::rpm;
@@ -245,8 +245,9 @@ void add_decision(std::string& out, const PlanResult& result) {
                  : "the cutting time at the feeds; what the robot takes is not known without [smoothing] in the cell");
     append(out, "             collisions {}\n", collisions_checked(result) ? "checked" : "not checked");
     append(out, "             {} changes of S, {} of F, {} lines of {} changed; {} cuts looked at, {} runs, {:.3g} s\n",
-           decision.speeds_changed, decision.feeds_changed, result.program_out ? result.program_out->changed_lines : 0,
-           result.program_name, decision.evaluations, decision.exact_runs, decision.seconds);
+           decision.speeds_changed, decision.feeds_changed,
+           result.decided->text ? result.decided->text->changed_lines : 0, result.decided->name, decision.evaluations,
+           decision.exact_runs, decision.seconds);
   } else {
     append(out, "no conditions: {}\n", decision.reason);
   }
@@ -265,7 +266,8 @@ void add_decision(std::string& out, const PlanResult& result) {
 std::string summary(const PlanResult& result) {
   std::string out;
   if (result.decision) add_decision(out, result);
-  if (result.blocks) add_blocks(out, *result.forces, *result.blocks);
+  const PlannedProgram& shown = result.shown();
+  if (shown.blocks) add_blocks(out, *shown.forces, *shown.blocks);
   const Agreement count = agreement(result.cuts);
   add_disagreement(out, count);
   if (result.hits) {
@@ -286,8 +288,8 @@ std::string summary(const PlanResult& result) {
   } else if (result.recommends() || !result.recommendation.reason.empty()) {
     append(out, "{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
   }
-  if (result.path) {
-    const path::Summary& smoothed = result.path->first().summary;
+  if (shown.path) {
+    const path::Summary& smoothed = shown.path->first().summary;
     append(out, "program      {:.3f} s for {} blocks; {} violations of limits\n", smoothed.duration_s, smoothed.blocks,
            smoothed.check.violations());
   }
@@ -295,11 +297,11 @@ std::string summary(const PlanResult& result) {
     append(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
            count.not_compared);
   }
-  if (result.blocks) io::add_notes(out, process::block_warnings(*result.forces, *result.blocks), "warning      ");
-  if (result.forces) io::add_notes(out, result.forces->warnings, "warning      ");
+  if (shown.blocks) io::add_notes(out, process::block_warnings(*shown.forces, *shown.blocks), "warning      ");
+  if (shown.forces) io::add_notes(out, shown.forces->warnings, "warning      ");
   io::add_notes(out, result.warnings, "warning      ");
   io::add_notes(out, result.notes, "note         ");
-  if (result.blocks) io::add_notes(out, process::block_notes(*result.blocks), "note         ");
+  if (shown.blocks) io::add_notes(out, process::block_notes(*shown.blocks), "note         ");
   if (result.decision) io::add_notes(out, result.decision->notes, "note         ");
   return out + assumed_text(result.assumed);
 }

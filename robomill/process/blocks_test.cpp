@@ -72,7 +72,7 @@ class Blocks : public ::testing::Test {
   }
   PlanResult run_with_modes() { return run("modes = \"" + source + "/data/robot-modes.toml\"\n"); }
   /// Forces and cuts of the program.
-  static ForcesResult forces_of(const PlanResult& plan) { return *plan.forces; }
+  static ForcesResult forces_of(const PlanResult& plan) { return *plan.shown().forces; }
   static DynamicsAt dynamics(double mass = 1.0) {
     return constant_dynamics(
         modal::modes_from_mass({{410, 0.03, 6.0 * mass}}, {{530, 0.03, 5.0 * mass}}, {{780, 0.03, 8.0 * mass}}));
@@ -228,24 +228,24 @@ TEST_F(Blocks, SaysWhereTheEngagementIsLost) {
   write_forces({.axial_n_per_mm2 = 2000.0});
   write_program();
   const PlanResult plan = run_with_modes();
-  const auto said = std::ranges::count_if(plan.forces->warnings, [](const std::string& text) {
+  const auto said = std::ranges::count_if(plan.shown().forces->warnings, [](const std::string& text) {
     return (text.find("lose the engagement") != std::string::npos ||
             text.find("does not settle") != std::string::npos) &&
            text.find("the first in line") != std::string::npos;
   });
   EXPECT_GE(said, 1);
-  ASSERT_TRUE(plan.blocks);
+  ASSERT_TRUE(plan.shown().blocks);
   const std::string text = summary(plan);
   EXPECT_TRUE(text.find("lose the engagement") != std::string::npos ||
               text.find("does not settle") != std::string::npos)
       << text;
-  const ProgramForces& program = *plan.forces->program;
+  const ProgramForces& program = *plan.shown().forces->program;
   const auto lost = std::ranges::count_if(
       program.blocks, [](const BlockResult& block) { return block.settled == BlockResult::Settled::lost; });
-  const auto json = nlohmann::json::parse(blocks_json(*plan.forces, *plan.blocks));
+  const auto json = nlohmann::json::parse(blocks_json(*plan.shown().forces, *plan.shown().blocks));
   EXPECT_EQ(json["summary"]["engagement_lost"], lost);
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    const std::string note = block_note(program.blocks[i], plan.blocks->rows[i]);
+    const std::string note = block_note(program.blocks[i], plan.shown().blocks->rows[i]);
     EXPECT_EQ(note == "engagement lost", program.blocks[i].settled == BlockResult::Settled::lost) << i;
   }
 }
@@ -255,7 +255,7 @@ TEST_F(Blocks, APlanWithoutLobesWritesThem) {
   write_forces();
   write_program();
   const PlanResult plan = run_with_modes();
-  ASSERT_TRUE(plan.blocks);
+  ASSERT_TRUE(plan.shown().blocks);
   EXPECT_FALSE(plan.has_lobes());
   const std::filesystem::path out = folder_.at("out");
   write_plan(out, plan);
@@ -268,16 +268,16 @@ TEST_F(Blocks, APlanWithoutLobesWritesThem) {
                          "chatter_frequency_hz,mode,regime,peak_f_n,torque_n_m,power_w,deflection_um,"
                          "surface_error_um,surface_left_um,gain_margin"));
   const auto json = nlohmann::json::parse(io::read_file(out / "blocks.json"));
-  EXPECT_EQ(json["blocks"]["block"].size(), plan.blocks->rows.size());
+  EXPECT_EQ(json["blocks"]["block"].size(), plan.shown().blocks->rows.size());
   EXPECT_EQ(json["limit_over"].size(), 4U);
-  for (std::size_t i = 0; i < plan.blocks->rows.size(); ++i) {
-    const BlockRow& row = plan.blocks->rows[i];
+  for (std::size_t i = 0; i < plan.shown().blocks->rows.size(); ++i) {
+    const BlockRow& row = plan.shown().blocks->rows[i];
     EXPECT_EQ(json["blocks"]["stability_margin"][i].is_null(), !row.cuts);
     if (!row.cuts || !std::isfinite(row.stability.at.limit_depth_m)) continue;
     EXPECT_NEAR(row.stability_margin, 1.0 - row.axial_depth_m / row.stability.limit_5_percent_m, 1e-12);
     EXPECT_LE(row.stability.limit_5_percent_m, row.stability.limit_95_percent_m);
   }
-  EXPECT_EQ(json["summary"]["cutting"], plan.blocks->cutting);
+  EXPECT_EQ(json["summary"]["cutting"], plan.shown().blocks->cutting);
 }
 
 // By forward kinematics the joints of a smoothed path hold the tip where each block ends, to the tolerance and a
@@ -296,12 +296,12 @@ TEST_F(Blocks, PosturesAreThoseOfTheSmoothedPath) {
       "max_angular_acceleration_deg_per_s2 = 600\nmax_angular_jerk_deg_per_s3 = 12000\n";
   folder_.file("cell.toml", cell);
   const PlanResult plan = run_with_modes();
-  ASSERT_TRUE(plan.path && plan.blocks);
-  const ProgramForces& program = *plan.forces->program;
-  ASSERT_EQ(plan.path->block_joints.size(), program.blocks.size());
-  const robot::Cell& arm = plan.forces->cell->cell;
+  ASSERT_TRUE(plan.shown().path && plan.shown().blocks);
+  const ProgramForces& program = *plan.shown().forces->program;
+  ASSERT_EQ(plan.shown().path->block_joints.size(), program.blocks.size());
+  const robot::Cell& arm = plan.shown().forces->cell->cell;
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    EXPECT_EQ(program.blocks[i].joints, plan.path->block_joints[i]);
+    EXPECT_EQ(program.blocks[i].joints, plan.shown().path->block_joints[i]);
     const robot::ToolPose pose = robot::tool_pose(arm, robot::forward(arm.arm, program.blocks[i].joints));
     EXPECT_LT((pose.tip_m - program.program.blocks[i].end.tip_m).norm(), 0.1e-3) << i;
   }

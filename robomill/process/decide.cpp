@@ -59,7 +59,7 @@ void keep_alternatives(const BlockModel& model, const ProgramDecision& choice, D
 /// Speeds, feeds and times of the stretches of the program that was found.
 void keep_stretches(const BlockModel& model, const ProgramDecision& choice, DecideResult& out) {
   const ProgramUnits& units = model.units();
-  const program::Program& program = *out.program;
+  const program::Program& program = out.forces->program->program;
   const std::vector<Lean> leans = model.leans(choice);
   double last_speed = 0.0;
   double last_feed = 0.0;
@@ -295,7 +295,6 @@ class Decider {
     out_.decided = kept.outcome;
     out_.alternatives = std::move(kept.alternatives);
     out_.gamma_offset_rad = chosen.gamma_offset_rad;
-    out_.program = std::move(chosen.standing.program);
     out_.forces = std::move(kept.tried.forces);
     out_.blocks = std::move(kept.tried.blocks);
   }

@@ -101,18 +101,16 @@ struct GammaMap {
   double least_margin = 0.0;
 };
 
-struct DecideResult {
+/// What was decided, and what the program comes to so.
+struct Decision {
   enum class Status {
-    found,      ///< `program` keeps every limit, by `blocks` and `forces` of its own
+    found,      ///< the decided program keeps every limit
     infeasible  ///< see `reason`; there is no program
   };
   Status status = Status::infeasible;
   std::string reason = {};
   Outcome as_programmed;
   std::optional<Outcome> decided = {};
-  std::optional<program::Program> program = {};
-  std::optional<ForcesResult> forces = {};  ///< of the program
-  std::optional<ProgramBlocks> blocks = {};
   std::vector<DecidedLines> stretches = {};
   std::vector<RejectedAlternative> alternatives = {};
   std::optional<GammaMap> gamma_map = {};
@@ -127,6 +125,12 @@ struct DecideResult {
   double seconds = 0.0;
   std::vector<std::string> notes = {};
   std::vector<Assumption> assumed = {};
+};
+
+/// A decision with its program as that was run through the material and judged; none where it is infeasible.
+struct DecideResult : Decision {
+  std::optional<ForcesResult> forces = {};
+  std::optional<ProgramBlocks> blocks = {};
 };
 
 /// Chooses spindle speeds, feeds and γ of a program by decision::decide_program with one look a class of blocks, runs

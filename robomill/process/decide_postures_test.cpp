@@ -50,7 +50,7 @@ class DecidePostures : public jobs::testing::ThreePasses {
 
 // A structure that is stiffer where the last joint stands elsewhere: as programmed it chatters at its speed.
 TEST_F(DecidePostures, TurnsGammaWhereThatAloneHelps) {
-  const double programmed = judged().forces->program->blocks[10].joints(5);
+  const double programmed = judged().programmed.forces->program->blocks[10].joints(5);
   const DynamicsAt turning = [programmed](const Eigen::VectorXd& joints) {
     const double away = std::sin(joints(5) - programmed);
     return PostureDynamics{.modes = modes(0.05 + 20.0 * away * away)};
@@ -71,10 +71,10 @@ TEST_F(DecidePostures, TurnsGammaWhereThatAloneHelps) {
   EXPECT_EQ(turned.gamma_map->margin.rows(), std::ssize(turned.gamma_map->gamma_rad));
   // By forward kinematics: the tip is where the program has it, turned by what was decided.
   const robot::Cell& cell = judged.forces.cell->cell;
-  for (std::size_t i = 0; i < turned.program->blocks.size(); ++i) {
+  for (std::size_t i = 0; i < turned.forces->program->program.blocks.size(); ++i) {
     const robot::ToolPose pose =
         robot::tool_pose(cell, robot::forward(cell.arm, turned.forces->program->blocks[i].joints));
-    EXPECT_LT((pose.tip_m - turned.program->blocks[i].end.tip_m).norm(), 1e-9) << i;
+    EXPECT_LT((pose.tip_m - turned.forces->program->program.blocks[i].end.tip_m).norm(), 1e-9) << i;
   }
 }
 
@@ -148,7 +148,7 @@ cutting::Workpiece finished(const ForcesResult& forces, const program::Program& 
 
 TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
   add_geometry(far_box);
-  const ForcesResult forces = *judged().forces;
+  const ForcesResult forces = *judged().programmed.forces;
   const robot::Cell& cell = forces.cell->cell;
   const DynamicsAt leaning = stiff_where_it_leans(cell, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
@@ -169,7 +169,7 @@ TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
   const program::Program& before = forces.program->program;
   for (std::size_t i = 0; i < before.blocks.size(); ++i) {
     const program::Pose& was = before.blocks[i].end;
-    const program::Pose& is = result.program->blocks[i].end;
+    const program::Pose& is = result.forces->program->program.blocks[i].end;
     EXPECT_LT((is.tip_m + radius_m * is.axis - was.tip_m - radius_m * was.axis).norm(), 1e-12) << i;
     EXPECT_NEAR(program::angle_between(was.axis, is.axis), 15.0 * units::deg, 1e-9) << i;
     // By forward kinematics the robot holds it so.
@@ -180,7 +180,7 @@ TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
   }
   // The surface is the same.
   const cutting::Workpiece programmed = finished(forces, before);
-  const cutting::Workpiece leant = finished(forces, *result.program);
+  const cutting::Workpiece leant = finished(forces, result.forces->program->program);
   const double removed_m3 = 40e-3 * 16e-3 * 8e-3 - programmed.volumes_m3().mean();
   EXPECT_LT((programmed.volumes_m3() - leant.volumes_m3()).cwiseAbs().maxCoeff(), 0.01 * removed_m3);
   for (int pass = 0; pass < 3; ++pass) {
@@ -194,7 +194,7 @@ TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
 TEST_F(DecidePostures, LeansThatCollideAreLeftOut) {
   // Beside the end of the passes, 4 mm from the holder of an upright tool.
   add_geometry("fixtures = [{ box_from_mm = [31, -20, 25], box_to_mm = [45, 20, 60] }]\n");
-  const ForcesResult forces = *judged().forces;
+  const ForcesResult forces = *judged().programmed.forces;
   const DynamicsAt leaning = stiff_where_it_leans(forces.cell->cell, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
   const Judged judged = {.forces = forces, .blocks = blocks};
@@ -219,8 +219,8 @@ TEST_F(DecidePostures, LeansNeedAGeometryAndABall) {
     ASSERT_EQ(result.status, DecideResult::Status::found) << result.reason;
     EXPECT_TRUE(std::ranges::any_of(
         result.notes, [](const std::string& note) { return note.find("stay as programmed") != std::string::npos; }));
-    for (std::size_t i = 0; i < result.program->blocks.size(); ++i) {
-      EXPECT_EQ(result.program->blocks[i].end.axis, judged.forces.program->program.blocks[i].end.axis);
+    for (std::size_t i = 0; i < result.forces->program->program.blocks.size(); ++i) {
+      EXPECT_EQ(result.forces->program->program.blocks[i].end.axis, judged.forces.program->program.blocks[i].end.axis);
     }
   }
   folder_.file("forces.toml", test_support::forces_file({.kind = "flat-end", .dexel_mm = 0.25}));
@@ -300,7 +300,7 @@ TEST_F(DecidePostures, LoadsWithoutTheSpindleAreAssumed) {
 // Against the equation of motion at speeds and accelerations in closed form.
 TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
   add_links();
-  const ForcesResult forces = *judged().forces;
+  const ForcesResult forces = *judged().programmed.forces;
   const cell::Cell& file = *forces.cell;
   ASSERT_TRUE(knows_torques(file));
   const Eigen::VectorXd middle = forces.program->blocks[5].joints;

@@ -44,8 +44,8 @@ TEST_F(Decide, KeepsEveryLimitThatTheProgramBrokeAndIsFaster) {
   EXPECT_GT(result.evaluations, 0);
   EXPECT_GE(result.exact_runs, 1);
   // The path is the program's.
-  for (std::size_t i = 0; i < result.program->blocks.size(); ++i) {
-    EXPECT_EQ(result.program->blocks[i].end.tip_m, judged.forces.program->program.blocks[i].end.tip_m);
+  for (std::size_t i = 0; i < result.forces->program->program.blocks.size(); ++i) {
+    EXPECT_EQ(result.forces->program->program.blocks[i].end.tip_m, judged.forces.program->program.blocks[i].end.tip_m);
   }
 }
 
@@ -114,16 +114,16 @@ TEST_F(Decide, TheProgramThatIsWrittenIsTheOneThatWasJudged) {
                                                 "\"out/program.ngc\"\n" +
                                                     modes_toml + "[decide]\nfree = []\n"),
                                    1);
-  ASSERT_EQ(again.blocks->rows.size(), plan.blocks->rows.size());
-  for (std::size_t i = 0; i < again.blocks->rows.size(); ++i) {
-    const BlockRow& a = again.blocks->rows[i];
-    const BlockRow& b = plan.blocks->rows[i];
+  ASSERT_EQ(again.shown().blocks->rows.size(), plan.shown().blocks->rows.size());
+  for (std::size_t i = 0; i < again.shown().blocks->rows.size(); ++i) {
+    const BlockRow& a = again.shown().blocks->rows[i];
+    const BlockRow& b = plan.shown().blocks->rows[i];
     EXPECT_EQ(a.cuts, b.cuts);
     if (!a.cuts) continue;
     EXPECT_NEAR(a.stability.at.spectral_radius, b.stability.at.spectral_radius, 1e-4);
     EXPECT_NEAR(a.spindle_speed_rad_per_s, b.spindle_speed_rad_per_s, 1e-4 * b.spindle_speed_rad_per_s);
-    EXPECT_LE(again.forces->program->blocks[i].force.peak_force_n,
-              1.001 * plan.forces->program->blocks[i].force.peak_force_n);
+    EXPECT_LE(again.shown().forces->program->blocks[i].force.peak_force_n,
+              1.001 * plan.shown().forces->program->blocks[i].force.peak_force_n);
   }
 }
 
@@ -144,8 +144,8 @@ TEST_F(Decide, TheHeadOfTheProgramSaysWhatWasChecked) {
                              "[job]\nforces = \"forces.toml\"\ncell = \"checked.toml\"\nprogram = \"part.ngc\"\n"
                              "modes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n"),
                 1);
-    if (!plan.program_out) return std::string("no program");
-    return plan.program_out->text.substr(0, 2000);
+    if (!plan.decided || !plan.decided->text) return std::string("no program");
+    return plan.decided->text->text.substr(0, 2000);
   };
   const std::string ends = head("");
   EXPECT_NE(ends.find("from block end to block end with every joint running evenly, no trajectory"), std::string::npos)
@@ -267,7 +267,7 @@ TEST_F(Decide, SaysWhichLimitNoSpeedKeepsAndWhere) {
   const Judged judged = judge(soft);
   const DecideResult result = decide(problem(judged, soft));
   EXPECT_EQ(result.status, DecideResult::Status::infeasible);
-  EXPECT_FALSE(result.program.has_value());
+  EXPECT_FALSE(result.forces.has_value());
   EXPECT_NE(result.reason.find("6000 to 18000 rpm"), std::string::npos) << result.reason;
   EXPECT_NE(result.reason.find("stability margin"), std::string::npos) << result.reason;
   EXPECT_NE(result.reason.find("(line "), std::string::npos) << result.reason;
@@ -332,9 +332,10 @@ TEST_F(Decide, FinishingPassesAreMovedWhereThatIsAskedFor) {
   EXPECT_LT(moved.compensation->rms_after_m, 0.5 * moved.compensation->rms_before_m);
   EXPECT_TRUE(moved.decided->violations.empty());
   double farthest = 0.0;
-  for (std::size_t i = 0; i < moved.program->blocks.size(); ++i) {
-    farthest = std::max(
-        farthest, (moved.program->blocks[i].end.tip_m - judged.forces.program->program.blocks[i].end.tip_m).norm());
+  for (std::size_t i = 0; i < moved.forces->program->program.blocks.size(); ++i) {
+    farthest = std::max(farthest, (moved.forces->program->program.blocks[i].end.tip_m -
+                                   judged.forces.program->program.blocks[i].end.tip_m)
+                                      .norm());
   }
   EXPECT_GT(farthest, 0.0);
   EXPECT_LE(farthest, asked.options.max_offset_m);
@@ -351,9 +352,10 @@ TEST_F(Decide, SpeedsChangeInRapidMovesAlone) {
   asked.options.spindle_ramp_rad_per_s2 = 1e6;
   const DecideResult result = decide(asked);
   ASSERT_EQ(result.status, DecideResult::Status::found) << result.reason;
-  for (std::size_t i = 1; i < result.program->blocks.size(); ++i) {
-    const program::Block& block = result.program->blocks[i];
-    if (block.spindle_speed_rad_per_s == result.program->blocks[i - 1].spindle_speed_rad_per_s) continue;
+  for (std::size_t i = 1; i < result.forces->program->program.blocks.size(); ++i) {
+    const program::Block& block = result.forces->program->program.blocks[i];
+    if (block.spindle_speed_rad_per_s == result.forces->program->program.blocks[i - 1].spindle_speed_rad_per_s)
+      continue;
     EXPECT_EQ(block.kind, program::Block::Kind::rapid);
   }
   asked.options.speed_changes = SpeedChanges::none;

@@ -94,8 +94,9 @@ TEST_F(DecideTime, AProgramThatTakesTheRobotLessThanEveryChoiceStays) {
   EXPECT_EQ(result.decided->cutting_time_s, result.as_programmed.cutting_time_s);
   const program::Program& before = judged.forces.program->program;
   for (std::size_t i = 0; i < before.blocks.size(); ++i) {
-    EXPECT_EQ(result.program->blocks[i].duration_s, before.blocks[i].duration_s);
-    EXPECT_EQ(result.program->blocks[i].spindle_speed_rad_per_s, before.blocks[i].spindle_speed_rad_per_s);
+    EXPECT_EQ(result.forces->program->program.blocks[i].duration_s, before.blocks[i].duration_s);
+    EXPECT_EQ(result.forces->program->program.blocks[i].spindle_speed_rad_per_s,
+              before.blocks[i].spindle_speed_rad_per_s);
   }
   EXPECT_TRUE(std::ranges::any_of(
       result.notes, [](const std::string& note) { return note.find("stay as programmed") != std::string::npos; }));

@@ -39,7 +39,7 @@ class Turned : public jobs::testing::ThreePasses {
   }
   /// Softer where the last joint stands as programmed.
   DynamicsAt turning() {
-    const double programmed = judged().forces->program->blocks[10].joints(5);
+    const double programmed = judged().programmed.forces->program->blocks[10].joints(5);
     return [programmed](const Eigen::VectorXd& joints) {
       const double away = std::sin(0.5 * (joints(5) - programmed));
       return PostureDynamics{.modes = modes(0.2 + 20.0 * away * away)};
@@ -48,23 +48,25 @@ class Turned : public jobs::testing::ThreePasses {
   PlanResult judged_with(const DynamicsAt& dynamics) {
     PlanResult plan = judged();
     plan.judging = {.dynamics = dynamics, .options = {.scan_points = 0}};
-    plan.blocks = judge_blocks(*plan.forces, dynamics, plan.judging->options);
+    plan.programmed.blocks = judge_blocks(*plan.programmed.forces, dynamics, plan.judging->options);
     return plan;
   }
   /// As decide_conditions leaves it.
   static PlanResult decided(PlanResult plan, const DecideOptions& options) {
-    const Judged programmed = {.forces = *plan.forces, .blocks = *plan.blocks};
+    const Judged programmed = {.forces = *plan.programmed.forces, .blocks = *plan.programmed.blocks};
     DecideProblem asked = problem(programmed, plan.judging->dynamics);
     asked.options = options;
-    plan.decision = decide(asked);
-    if (plan.decision->status == DecideResult::Status::found) {
-      plan.forces = *std::exchange(plan.decision->forces, std::nullopt);
-      plan.blocks = *std::exchange(plan.decision->blocks, std::nullopt);
+    DecideResult found = decide(asked);
+    if (found.forces) {
+      plan.decided.emplace();
+      plan.decided->forces = std::move(found.forces);
+      plan.decided->blocks = std::move(found.blocks);
     }
+    plan.decision = static_cast<Decision&&>(found);
     return plan;
   }
   static std::vector<double> ways(const PlanResult& plan) {
-    const program::Program& program = plan.forces->program->program;
+    const program::Program& program = plan.shown().forces->program->program;
     std::vector<double> out = {0.0};
     for (std::size_t i = 0; i < program.blocks.size(); ++i) {
       out.push_back(out.back() + (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm());
@@ -81,13 +83,13 @@ std::string numbers_of(const ForcesResult& forces, const ProgramBlocks& blocks) 
 TEST_F(Turned, AsProgrammedItIsThePlan) {
   const PlanResult plan = judged();
   const TurnedProgram same = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.0}});
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.forces, *plan.blocks));
-  EXPECT_EQ(same.blocks.worst, plan.blocks->worst);
-  EXPECT_EQ(same.blocks.evaluations, plan.blocks->evaluations);
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
+  EXPECT_EQ(same.blocks.worst, plan.shown().blocks->worst);
+  EXPECT_EQ(same.blocks.evaluations, plan.shown().blocks->evaluations);
   EXPECT_TRUE(same.blocks.scans.empty());
   EXPECT_TRUE(same.lost.empty());
   // There is no map: every block that cuts is shown.
-  EXPECT_EQ(same.shown.size(), plan.blocks->cutting);
+  EXPECT_EQ(same.shown.size(), plan.shown().blocks->cutting);
 }
 
 // γ counts from the program as programmed, also where the plan has turned it.
@@ -103,7 +105,7 @@ TEST_F(Turned, AtTheChosenGammaItIsThePlan) {
     if (knots.empty() || way[i] > knots.back().path_m) knots.push_back({.path_m = way[i], .gamma_rad = chosen[i]});
   }
   const TurnedProgram same = judge_turned(jobs::judged_program(plan), knots);
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.forces, *plan.blocks));
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
   EXPECT_NEAR(same.least_stability_margin, plan.decision->decided->least_stability_margin, 1e-12);
   ASSERT_EQ(same.shown, plan.decision->gamma_map->block);
   for (std::size_t k = 0; k < same.shown.size(); ++k) {
@@ -144,11 +146,11 @@ TEST_F(Turned, TheRobotHoldsTheToolSoAndBendsAsItDoesThere) {
                                         {.path_m = 0.7 * end_m, .gamma_rad = 40.0 * units::deg}};
   const TurnedProgram turned = judge_turned(jobs::judged_program(plan), knots);
   ASSERT_TRUE(turned.lost.empty());
-  const robot::Cell& cell = plan.forces->cell->cell;
+  const robot::Cell& cell = plan.shown().forces->cell->cell;
   const std::vector<double> way = ways(plan);
   bool other = false;
-  for (std::size_t i = 0; i < plan.blocks->rows.size(); ++i) {
-    const BlockResult& was = plan.forces->program->blocks[i];
+  for (std::size_t i = 0; i < plan.shown().blocks->rows.size(); ++i) {
+    const BlockResult& was = plan.shown().forces->program->blocks[i];
     const BlockResult& is = turned.forces.program->blocks[i];
     const robot::ToolPose from = robot::tool_pose(cell, robot::forward(cell.arm, was.joints));
     const robot::ToolPose to = robot::tool_pose(cell, robot::forward(cell.arm, is.joints));
@@ -172,7 +174,7 @@ TEST_F(Turned, KeepsTheLeanOfADecision) {
   append("cell.toml",
          "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
          "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n");
-  const ForcesResult programmed = *judged().forces;
+  const ForcesResult programmed = *judged().programmed.forces;
   const robot::Cell& cell = programmed.cell->cell;
   const DynamicsAt leaning = [&cell](const Eigen::VectorXd& joints) {
     const Eigen::Vector3d axis = robot::tool_pose(cell, robot::forward(cell.arm, joints)).axis;
@@ -183,15 +185,15 @@ TEST_F(Turned, KeepsTheLeanOfADecision) {
   ASSERT_EQ(plan.decision->status, DecideResult::Status::found) << plan.decision->reason;
   ASSERT_NE(plan.decision->stretches.front().lead_rad, 0.0);
   const TurnedProgram same = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.0}});
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.forces, *plan.blocks));
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
   const TurnedProgram turned =
       judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 10.0 * units::deg}});
   ASSERT_TRUE(turned.lost.empty()) << turned.lost.front().reason;
-  for (std::size_t i = 0; i < plan.blocks->rows.size(); ++i) {
+  for (std::size_t i = 0; i < plan.shown().blocks->rows.size(); ++i) {
     const robot::ToolPose was = robot::tool_pose(cell, robot::forward(cell.arm, programmed.program->blocks[i].joints));
     const robot::ToolPose is =
         robot::tool_pose(cell, robot::forward(cell.arm, turned.forces.program->blocks[i].joints));
-    const program::Pose& end = plan.decision->program->blocks[i].end;
+    const program::Pose& end = plan.decided->forces->program->program.blocks[i].end;
     EXPECT_LT((is.tip_m - end.tip_m).norm(), 1e-9) << i;
     EXPECT_LT((is.axis - end.axis).norm(), 1e-9) << i;
     EXPECT_NEAR(is.gamma_rad - was.gamma_rad, 10.0 * units::deg, 1e-9) << i;
@@ -206,15 +208,15 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
   const TurnedProgram free = judge_turned(jobs::judged_program(plan), ramp);
   ASSERT_TRUE(free.lost.empty());
   EXPECT_TRUE(free.other_way.empty());
-  robot::Joint& last = plan.forces->cell->cell.arm.joints.back();
-  const double begin = plan.forces->program->blocks.front().joints(5);
+  robot::Joint& last = plan.programmed.forces->cell->cell.arm.joints.back();
+  const double begin = plan.shown().forces->program->blocks.front().joints(5);
   const double end = free.forces.program->blocks.back().joints(5);
   (end > begin ? last.max_position : last.min_position) = 0.5 * (begin + end);
   // Where the last joint ends halfway it turns back once …
   EXPECT_EQ(judge_turned(jobs::judged_program(plan), ramp).other_way.size(), 1U);
   // … which here it has no room for, nor the others for the wrist to go over.
   (end > begin ? last.min_position : last.max_position) = begin + (end > begin ? -0.3 : 0.3);
-  std::vector<robot::Joint>& joints = plan.forces->cell->cell.arm.joints;
+  std::vector<robot::Joint>& joints = plan.programmed.forces->cell->cell.arm.joints;
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const auto [low, high] = std::ranges::minmax(free.forces.program->blocks, {},
@@ -245,7 +247,7 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
   EXPECT_EQ(json["lost"].size(), turned.lost.size());
   const std::size_t first = turned.lost.front().block;
   EXPECT_EQ(json["lost"][0]["block"], first + 1);
-  EXPECT_EQ(json["lost"][0]["line"], plan.forces->program->program.blocks[first].line);
+  EXPECT_EQ(json["lost"][0]["line"], plan.shown().forces->program->program.blocks[first].line);
   EXPECT_TRUE(json["blocks"]["blocks"]["q6"][first].is_null());
   EXPECT_TRUE(json["blocks"]["blocks"]["stability_margin"][first].is_null());
   EXPECT_EQ(json["unstable"], turned.blocks.unstable);
@@ -285,12 +287,12 @@ TEST_F(Turned, SaysWhereADriveGivesNoMore) {
     return says;
   };
   EXPECT_FALSE(noted()) << "no drive has a limit";
-  for (robot::Joint& joint : plan.forces->cell->cell.arm.joints) {
+  for (robot::Joint& joint : plan.programmed.forces->cell->cell.arm.joints) {
     joint.link.mass_kg = 50.0;
     joint.max_torque = 1e6;
   }
   EXPECT_FALSE(noted());
-  plan.forces->cell->cell.arm.joints[1].max_torque = 1.0;
+  plan.programmed.forces->cell->cell.arm.joints[1].max_torque = 1.0;
   EXPECT_TRUE(noted());
 }
 

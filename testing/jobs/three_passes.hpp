@@ -50,7 +50,7 @@ class ThreePasses : public ::testing::Test {
     process::ProgramBlocks blocks;
   };
   Judged judge(const process::DynamicsAt& dynamics) {
-    process::ForcesResult forces = *judged().forces;
+    process::ForcesResult forces = *judged().programmed.forces;
     process::ProgramBlocks blocks = process::judge_blocks(forces, dynamics, {.scan_points = 0});
     return {.forces = std::move(forces), .blocks = std::move(blocks)};
   }

@@ -67,27 +67,28 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
   if (result.has_lobes()) {
     files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
   }
-  if (result.forces) {
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) {
     files.push_back({.stage = "forces",
                      .file = "forces.csv",
-                     .description = result.forces->program ? "cutting forces, a row a block of the program"
-                                                           : "cutting forces over a revolution"});
+                     .description = shown.forces->program ? "cutting forces, a row a block of the program"
+                                                          : "cutting forces over a revolution"});
   }
-  if (result.blocks) {
+  if (shown.blocks) {
     files.push_back({.stage = "blocks", .file = "blocks.csv", .description = "stability and load, a row a block"});
     files.push_back({.stage = "blocks", .file = "blocks.json", .description = "the same by columns"});
   }
-  if (result.path) {
+  if (shown.path) {
     files.push_back({.stage = "path", .file = "smooth.json", .description = "the smoothed program beside its limits"});
-    if (result.path->smoothed.written) {
+    if (shown.path->smoothed.written) {
       files.push_back({.stage = "path",
-                       .file = result.path->output.filename().string(),
+                       .file = shown.path->output.filename().string(),
                        .description = "joints and tool, a row a sample"});
     }
   }
-  if (result.program_out) {
+  if (result.decided && result.decided->text) {
     files.push_back(
-        {.stage = "plan", .file = result.program_name, .description = "the program at the decided speeds and feeds"});
+        {.stage = "plan", .file = result.decided->name, .description = "the program at the decided speeds and feeds"});
   }
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
   return files;
@@ -103,18 +104,19 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   if (result.frfs) files.write("tip.uff", modal::frf_uff(*result.frfs));
   if (!report.modes.empty()) files.write("modes.json", report.modes);
   if (result.has_lobes()) files.write("lobes.json", report.lobes);
-  if (result.forces) files.write("forces.csv", process::forces_csv(*result.forces));
-  if (result.blocks) {
-    files.write("blocks.csv", process::blocks_csv(*result.forces, *result.blocks));
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) files.write("forces.csv", process::forces_csv(*shown.forces));
+  if (shown.blocks) {
+    files.write("blocks.csv", process::blocks_csv(*shown.forces, *shown.blocks));
     files.write("blocks.json", report.blocks);
   }
-  if (result.program_out) files.write(result.program_name, result.program_out->text);
-  if (result.monitor) {
-    files.write(monitor_modes_name, result.monitor->modes_json);
-    files.write(monitor_name, result.monitor->toml);
+  if (result.decided && result.decided->text) files.write(result.decided->name, result.decided->text->text);
+  if (result.decided && result.decided->monitor) {
+    files.write(monitor_modes_name, result.decided->monitor->modes_json);
+    files.write(monitor_name, result.decided->monitor->toml);
   }
-  if (result.path) {
-    files.place(*result.path);
+  if (shown.path) {
+    files.place(*shown.path);
     files.write("smooth.json", report.smooth);
   }
   files.write(plan_name, plan_text(plan));

@@ -159,8 +159,8 @@ Json decision_json(const PlanResult& result) {
   if (result.hits) json["hit_directions"] = result.hit_directions;
   if (result.decision) {
     process::DecisionOutput output{.collisions_checked = collisions_checked(result)};
-    if (result.program_out) output.changed_lines = result.program_out->changed_lines;
-    json["decision"] = process::decision_object(*result.decision, *result.forces, result.job.decide, output);
+    if (result.decided && result.decided->text) output.changed_lines = result.decided->text->changed_lines;
+    json["decision"] = process::decision_object(*result.decision, *result.shown().forces, result.job.decide, output);
   }
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
@@ -204,9 +204,10 @@ Json plan_object(const PlanResult& result) {
   if (result.job.has_structure())
     json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
   if (result.has_lobes()) json["lobes"] = stability::lobes_object(result.lobes, result.uncertain);
-  if (result.forces) json["forces"] = process::forces_object(*result.forces);
-  if (result.blocks) json["blocks"] = process::blocks_summary(*result.forces, *result.blocks);
-  if (result.path) json["path"] = path::smooth_object(result.path->smoothed);
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) json["forces"] = process::forces_object(*shown.forces);
+  if (shown.blocks) json["blocks"] = process::blocks_summary(*shown.forces, *shown.blocks);
+  if (shown.path) json["path"] = path::smooth_object(shown.path->smoothed);
   return json;
 }
 

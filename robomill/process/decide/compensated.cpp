@@ -60,7 +60,7 @@ void compensate_found(const DecideProblem& problem, const BlockModel& model, Dec
   const bool has_moved =
       moved.status == Compensation::Status::settled || moved.status == Compensation::Status::unsettled;
   if (!has_moved) return;
-  StandingProgram standing = {.program = at_feeds_of(moved.program, *out.program), .stands = {}};
+  StandingProgram standing = {.program = at_feeds_of(moved.program, out.forces->program->program), .stands = {}};
   const auto not_compensated = [&](const std::string& why, std::size_t block) {
     out.notes.push_back(fmt::format("The path is not compensated: {} in {}.", why, named_block(problem.forces, block)));
   };
@@ -82,7 +82,6 @@ void compensate_found(const DecideProblem& problem, const BlockModel& model, Dec
     violations = violations_of(run, model.chip_m());
     if (violations.empty()) {
       out.decided = outcome_of(run, model.chip_m());
-      out.program = std::move(standing.program);
       out.forces = std::move(tried.forces);
       out.blocks = std::move(tried.blocks);
       out.compensation = std::move(moved);

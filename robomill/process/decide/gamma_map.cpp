@@ -41,7 +41,7 @@ GammaMap gamma_map(const DecideProblem& problem, const BlockModel& model, const 
     gamma.clear();
     for (int k = -map_steps; k <= map_steps; ++k) gamma.push_back(k * map_step_rad);
   }
-  const program::Program& program = result.program ? *result.program : problem.forces.program->program;
+  const program::Program& program = (result.forces ? *result.forces : problem.forces).program->program;
   std::vector<std::size_t> cutting;
   const std::vector<double> way = ways_m(program);
   const auto way_of = [&](std::size_t block) -> const WayModel& {

@@ -53,19 +53,18 @@ double feed_of(double feed_m_per_s) {
   return feed_m_per_s / units::mm * units::minute;
 }
 
-std::size_t line_of(const DecideResult& result, const ForcesResult& forces, std::size_t block) {
-  const program::Program& program = result.program ? *result.program : forces.program->program;
-  return program.blocks[block].line;
+std::size_t line_of(const ForcesResult& forces, std::size_t block) {
+  return forces.program->program.blocks[block].line;
 }
 
-Json outcome_json(const Outcome& outcome, const DecideResult& result, const ForcesResult& forces) {
+Json outcome_json(const Outcome& outcome, const ForcesResult& forces) {
   Json violations = Json::array();
   for (const Violation& v : outcome.violations) {
     const LimitWords* words = words_of(v.limit);
     const double factor = words != nullptr ? words->factor : 1.0;
     violations.push_back({{"limit", decision::to_string(v.limit)},
                           {"block", v.block + 1},
-                          {"line", line_of(result, forces, v.block)},
+                          {"line", line_of(forces, v.block)},
                           {"value", number(v.value / factor)},
                           {"allowed", number(v.allowed / factor)},
                           {"unit", words != nullptr ? words->unit : ""}});
@@ -90,7 +89,7 @@ Json outcome_json(const Outcome& outcome, const DecideResult& result, const Forc
       {"violations", std::move(violations)}};
 }
 
-Json alternatives_json(const DecideResult& result, const ForcesResult& forces) {
+Json alternatives_json(const Decision& result, const ForcesResult& forces) {
   Json rows = Json::array();
   for (const RejectedAlternative& one : result.alternatives) {
     const bool slower = one.speed.stopped_by.limit == ProgramLimit::none;
@@ -102,7 +101,7 @@ Json alternatives_json(const DecideResult& result, const ForcesResult& forces) {
                     {"stopped_by", std::move(stopped)},
                     {"limit", slower ? Json() : Json(decision::to_string(one.speed.stopped_by.limit))},
                     {"block", slower ? Json() : Json(one.block + 1)},
-                    {"line", slower ? Json() : Json(line_of(result, forces, one.block))}});
+                    {"line", slower ? Json() : Json(line_of(forces, one.block))}});
   }
   return rows;
 }
@@ -115,14 +114,14 @@ std::string reached_text(const decision::LimitUse& use) {
   return fmt::format("{} of {:.3g}{}", words->name, use.allowed / words->factor, unit);
 }
 
-Json stretches_json(const DecideResult& result, const ForcesResult& forces) {
+Json stretches_json(const Decision& result, const ForcesResult& forces) {
   Json rows = Json::array();
   for (const DecidedLines& lines : result.stretches) {
     rows.push_back(
         {{"first_block", lines.first_block + 1},
          {"last_block", lines.last_block + 1},
-         {"first_line", line_of(result, forces, lines.first_block)},
-         {"last_line", line_of(result, forces, lines.last_block)},
+         {"first_line", line_of(forces, lines.first_block)},
+         {"last_line", line_of(forces, lines.last_block)},
          {"spindle_speed_rpm", number(lines.spindle_speed_rad_per_s / units::rpm)},
          {"lead_deg", number(lines.lead_rad / units::deg)},
          {"tilt_deg", number(lines.tilt_rad / units::deg)},
@@ -185,11 +184,11 @@ std::string limit_text(const decision::LimitUse& use) {
                      at_least ? "at least" : "at most", use.allowed / words->factor, unit);
 }
 
-Json decision_object(const DecideResult& result, const ForcesResult& forces, const DecideOptions& options,
+Json decision_object(const Decision& result, const ForcesResult& forces, const DecideOptions& options,
                      const DecisionOutput& output) {
   Json free = Json::array();
   for (const Free what : options.free) free.push_back(name_in(free_names, what));
-  Json out = {{"status", result.status == DecideResult::Status::found ? "found" : "infeasible"},
+  Json out = {{"status", result.status == Decision::Status::found ? "found" : "infeasible"},
               {"reason", result.reason},
               {"goal", name_in(goal_names, options.goal)},
               {"free", std::move(free)},
@@ -197,8 +196,8 @@ Json decision_object(const DecideResult& result, const ForcesResult& forces, con
               {"evaluations", result.evaluations},
               {"exact_runs", result.exact_runs},
               {"seconds", number(result.seconds)},
-              {"as_programmed", outcome_json(result.as_programmed, result, forces)},
-              {"decided", result.decided ? outcome_json(*result.decided, result, forces) : Json()},
+              {"as_programmed", outcome_json(result.as_programmed, forces)},
+              {"decided", result.decided ? outcome_json(*result.decided, forces) : Json()},
               {"alternatives", alternatives_json(result, forces)},
               {"stretches", stretches_json(result, forces)},
               {"notes", result.notes},

@@ -16,7 +16,7 @@ struct DecisionOutput {
 /// The decision of plan.json.
 /// @param forces   of the decided program; without one, of the program as it was
 /// @param options  that it was made with
-[[nodiscard]] io::Json decision_object(const DecideResult& result, const ForcesResult& forces,
-                                       const DecideOptions& options, const DecisionOutput& output);
+[[nodiscard]] io::Json decision_object(const Decision& result, const ForcesResult& forces, const DecideOptions& options,
+                                       const DecisionOutput& output);
 
 }  // namespace robomill::process

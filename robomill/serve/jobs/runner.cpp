@@ -64,7 +64,7 @@ RunJob run_here(std::filesystem::path root) {
     Progress progress(report, &stop);
     JobRun run = {.outcome = run_verb(request, root, progress)};
     if (const std::shared_ptr<const jobs::PlanResult> plan = std::move(run.outcome.plan)) {
-      run.blocks = plan->blocks->rows.size();
+      run.blocks = plan->shown().blocks->rows.size();
       run.turn = [plan](const std::string& body, Progress& turning) {
         return live_program(read_live_program_request(body), *plan, turning);
       };

@@ -196,7 +196,7 @@ class Work {
     try {
       JobOutcome outcome = run_verb(request, folder_.root(), progress);
       plan_ = std::move(outcome.plan);
-      return {.body = text_of(outcome, plan_ ? plan_->blocks->rows.size() : 0)};
+      return {.body = text_of(outcome, plan_ ? plan_->shown().blocks->rows.size() : 0)};
     } catch (const std::bad_alloc&) {
       constexpr std::uint64_t mb = 1'000'000;
       return error_response(

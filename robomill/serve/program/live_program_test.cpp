@@ -70,15 +70,15 @@ TEST_F(LiveProgram, AnswersAsThePlanDoes) {
       read_live_program_request(R"({"job": 1, "gamma": [[0, 0]], "client": "c", "channel": "program", "sequence": 7})");
   const json answer = json::parse(live_program(asked, *plan));
   EXPECT_EQ(answer["sequence"], 7);
-  const json blocks = json::parse(process::blocks_json(*plan->forces, *plan->blocks));
+  const json blocks = json::parse(process::blocks_json(*plan->shown().forces, *plan->shown().blocks));
   EXPECT_EQ(answer["blocks"]["blocks"], blocks["blocks"]);
   EXPECT_EQ(answer["blocks"]["summary"]["worst"], blocks["summary"]["worst"]);
   EXPECT_EQ(answer["unstable"], blocks["summary"]["unstable"]);
   EXPECT_EQ(answer["worst_block"], blocks["summary"]["worst"]["block"]);
   EXPECT_EQ(answer["lost"], json::array());
-  ASSERT_EQ(answer["gamma"]["block"].size(), plan->blocks->cutting);
+  ASSERT_EQ(answer["gamma"]["block"].size(), plan->shown().blocks->cutting);
   double least = 1e300;
-  for (std::size_t k = 0; k < plan->blocks->cutting; ++k) {
+  for (std::size_t k = 0; k < plan->shown().blocks->cutting; ++k) {
     const std::size_t block = answer["gamma"]["block"][k].get<std::size_t>() - 1;
     EXPECT_EQ(answer["gamma"]["margin"][k], blocks["blocks"]["stability_margin"][block]);
     EXPECT_EQ(answer["gamma"]["gamma_deg"][k], 0.0);
