@@ -342,7 +342,7 @@ bool judge_loads(const jobs::PlanResult& plan, const Judged& before, const Judge
                                    {"spindle speed", "rpm", units::rpm, false},
                                    {"spindle speed, at least", "rpm", units::rpm, true},
                                    {"a joint's torque, of its drive's", "", 1.0, false}}};
-  const decision::RecommendOptions& machine = plan.job.recommend;
+  const decision::MachineLimits& machine = plan.job.recommend;
   for (std::size_t i = 0; i < after.blocks.rows.size(); ++i) {
     const process::BlockRow& row = after.blocks.rows[i];
     if (!row.cuts) continue;

@@ -26,10 +26,10 @@ int main() {
 
   decision::RecommendOptions limits;
   limits.radial_depth_m = radial_depth_m;
-  limits.depth_margin = 0.2;
-  limits.spindle = {{3000 * units::rpm, 2.4, 0.75 * units::kw},
-                    {12000 * units::rpm, 2.4, 3.0 * units::kw},
-                    {18000 * units::rpm, 1.6, 3.0 * units::kw}};
+  limits.machine.depth_margin = 0.2;
+  limits.machine.spindle = {{3000 * units::rpm, 2.4, 0.75 * units::kw},
+                            {12000 * units::rpm, 2.4, 3.0 * units::kw},
+                            {18000 * units::rpm, 1.6, 3.0 * units::kw}};
   const decision::Recommendation choice = decision::choose(problem, options, lobes.limit, limits);
   if (!choice.recommended) {
     std::printf("no safe depth: %s\n", choice.reason.c_str());
@@ -47,10 +47,11 @@ int main() {
   const decision::Operation& best = *choice.recommended;
   const stability::PointResult there =
       stability::evaluate_point(problem, options, {best.spindle_speed_rad_per_s, best.axial_depth_m});
-  const decision::SpindleCapacity capacity = decision::capacity_at(limits.spindle, best.spindle_speed_rad_per_s);
+  const decision::SpindleCapacity capacity =
+      decision::capacity_at(limits.machine.spindle, best.spindle_speed_rad_per_s);
   std::printf("vibration there shrinks to %.2f of itself from tooth to tooth; the spindle gives %.2f N m and %.2f kW\n",
               there.spectral_radius, capacity.torque_n_m, capacity.power_w / units::kw);
-  return there.stable && best.margin >= limits.depth_margin - 1e-9 &&
+  return there.stable && best.margin >= limits.machine.depth_margin - 1e-9 &&
                  best.torque_n_m <= capacity.torque_n_m * (1.0 + 1e-9) &&
                  best.power_w <= capacity.power_w * (1.0 + 1e-9)
              ? 0

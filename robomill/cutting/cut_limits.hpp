@@ -13,4 +13,10 @@ void require_spindle_speed(const std::string& field, double spindle_speed_rad_pe
 /// @throws InvalidInput unless in [0, 10 mm]
 void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m);
 
+/// Share of a limit that depths keep off, as "depth_margin". @throws InvalidInput unless in [0, 1)
+void require_depth_margin(double depth_margin);
+
+/// Of speeds n (1 ± w) beside each, as "speed_window". @throws InvalidInput unless in [0, 0.5)
+void require_speed_window(double speed_window);
+
 }  // namespace robomill::cutting

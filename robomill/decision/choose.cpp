@@ -15,8 +15,8 @@ DepthLimit with_finish(const stability::Limit& chatter, const stability::LobesPr
                        const stability::ForcedResponse& response, const RecommendOptions& options,
                        const FinishLimits& finish) {
   const bool found = chatter.status == stability::Limit::Status::found;
-  double deepest_m = (found ? chatter.axial_depth_m : options.searched_depth_m) * (1.0 - options.depth_margin);
-  if (options.max_axial_depth_m > 0.0) deepest_m = std::min(deepest_m, options.max_axial_depth_m);
+  double deepest_m = (found ? chatter.axial_depth_m : options.searched_depth_m) * (1.0 - options.machine.depth_margin);
+  if (options.machine.max_axial_depth_m > 0.0) deepest_m = std::min(deepest_m, options.machine.max_axial_depth_m);
   const double speed = chatter.spindle_speed_rad_per_s;
   const FinishDepth surface = finish_depth(problem, speed, deepest_m, finish);
   const FinishDepth vibration = vibration_depth(response, speed, deepest_m, options.feed_per_tooth_m);

@@ -58,9 +58,9 @@ TEST(Choose, ForcedVibrationIsALimit) {
 TEST(Choose, EdgeForcesLoadTheSpindle) {
   const std::vector<SpindleCapacity> spindle = {{400.0, 0.02, 1e6}, {3000.0, 0.02, 1e6}};
   stability::LobesProblem problem = cut(0.1e-3);
-  const Recommendation without = chosen(problem, {.radial_depth_m = 1e-3, .spindle = spindle});
+  const Recommendation without = chosen(problem, {.radial_depth_m = 1e-3, .machine = {.spindle = spindle}});
   problem.milling.coefficients.tangential_edge_n_per_m = 20e3;
-  const Recommendation with = chosen(problem, {.radial_depth_m = 1e-3, .spindle = spindle});
+  const Recommendation with = chosen(problem, {.radial_depth_m = 1e-3, .machine = {.spindle = spindle}});
   EXPECT_LT(with.recommended->axial_depth_m, without.recommended->axial_depth_m);
   for (const Operation& op : all_of(with)) {
     const double torque = cutting::mean_torque_n_m(problem.milling, op.axial_depth_m, 0.1e-3);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/decision/program/candidates.hpp"
 #include "robomill/decision/program/even_feeds.hpp"
 #include "robomill/decision/program/looks.hpp"
@@ -274,9 +275,7 @@ void ProgramOptions::validate() const {
                          "must not be below the lowest speed");
     }
   }
-  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
-    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
-  }
+  cutting::require_speed_window(speed_window);
   require_non_negative("ramp_rad_per_s2", ramp_rad_per_s2, "rad/s^2");
   require_non_negative("feed_slack", feed_slack, "");
   require_non_negative("speed_step_rad_per_s", speed_step_rad_per_s, "rad/s");

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 
 namespace robomill::decision {
 namespace {
@@ -40,7 +43,7 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
   op.feed_m_per_s = options.feed_per_tooth_m * options.teeth * speed / (2.0 * std::numbers::pi);
   op.cutting_speed_m_per_s = 0.5 * options.diameter_m * speed;
   op.limit_depth_m = depth_or_all(lowest, options);
-  op.axial_depth_m = op.limit_depth_m * (1.0 - options.depth_margin);
+  op.axial_depth_m = op.limit_depth_m * (1.0 - options.machine.depth_margin);
   op.limited_by = lowest.status == stability::Limit::Status::found ? LimitedBy::chatter : LimitedBy::depth_range;
   op.chatter_frequency_hz = lowest.chatter_frequency_hz;
   op.mode = lowest.mode;
@@ -50,9 +53,9 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
       op.limited_by = reason;
     }
   };
-  if (options.max_axial_depth_m > 0.0) cap(options.max_axial_depth_m, LimitedBy::cutter);
-  if (!options.spindle.empty() && options.mean_torque_n_m) {
-    const SpindleCapacity capacity = capacity_at(options.spindle, speed);
+  if (options.machine.max_axial_depth_m > 0.0) cap(options.machine.max_axial_depth_m, LimitedBy::cutter);
+  if (!options.machine.spindle.empty() && options.mean_torque_n_m) {
+    const SpindleCapacity capacity = capacity_at(options.machine.spindle, speed);
     const auto depth_of = [&](double torque_n_m) {
       return depth_of_torque_m(options.mean_torque_n_m, torque_n_m, op.axial_depth_m);
     };
@@ -70,13 +73,14 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
 /// One operation for each given speed whose whole window lies within the limits and the spindle's range.
 std::vector<Candidate> candidates(const std::vector<DepthLimit>& limits, const RecommendOptions& options) {
   std::vector<Candidate> out;
-  const double highest = options.max_spindle_speed_rad_per_s > 0.0 ? options.max_spindle_speed_rad_per_s
-                                                                   : limits.back().chatter.spindle_speed_rad_per_s;
+  const double highest = options.machine.max_spindle_speed_rad_per_s > 0.0
+                             ? options.machine.max_spindle_speed_rad_per_s
+                             : limits.back().chatter.spindle_speed_rad_per_s;
   for (const DepthLimit& centre : limits) {
     const double speed = centre.chatter.spindle_speed_rad_per_s;
-    const double from = speed * (1.0 - options.speed_window);
-    const double to = speed * (1.0 + options.speed_window);
-    if (speed < options.min_spindle_speed_rad_per_s || speed > highest) continue;
+    const double from = speed * (1.0 - options.machine.speed_window);
+    const double to = speed * (1.0 + options.machine.speed_window);
+    if (speed < options.machine.min_spindle_speed_rad_per_s || speed > highest) continue;
     if (from < limits.front().chatter.spindle_speed_rad_per_s || to > limits.back().chatter.spindle_speed_rad_per_s)
       continue;
     Window window;
@@ -128,7 +132,7 @@ Operation verified(const Candidate& candidate, const RecommendOptions& options,
   Window window = candidate.window;
   for (int i = 0; i < looks; ++i) {
     const double part = 2.0 * i / (looks - 1) - 1.0;
-    window.add(limit_at(speed * (1.0 + options.speed_window * part)), options);
+    window.add(limit_at(speed * (1.0 + options.machine.speed_window * part)), options);
   }
   return operation_at(speed, window, options);
 }
@@ -180,29 +184,54 @@ double depth_of_torque_m(const std::function<double(double)>& mean_torque_n_m, d
   return low_m;
 }
 
-std::array<double, 2> spindle_range(const RecommendOptions& options) {
-  double from = options.min_spindle_speed_rad_per_s;
-  double to = options.max_spindle_speed_rad_per_s;
-  if (!options.spindle.empty()) {
-    from = std::max(from, options.spindle.front().spindle_speed_rad_per_s);
-    const double end = options.spindle.back().spindle_speed_rad_per_s;
+std::array<double, 2> spindle_range(const MachineLimits& limits) {
+  double from = limits.min_spindle_speed_rad_per_s;
+  double to = limits.max_spindle_speed_rad_per_s;
+  if (!limits.spindle.empty()) {
+    from = std::max(from, limits.spindle.front().spindle_speed_rad_per_s);
+    const double end = limits.spindle.back().spindle_speed_rad_per_s;
     to = to > 0.0 ? std::min(to, end) : end;
   }
   return {from, to};
 }
 
+void MachineLimits::validate() const {
+  require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
+  if (max_axial_depth_m > 0.5) {
+    throw InvalidInput("max_axial_depth_m", max_axial_depth_m, "m", "is deeper than any milling cut",
+                       "It is the length of the cutter's edges; are the units mixed up?");
+  }
+  const std::pair<const char*, double> range[] = {{"min_spindle_speed_rad_per_s", min_spindle_speed_rad_per_s},
+                                                  {"max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s}};
+  for (const auto& [name, speed] : range) {
+    if (speed != 0.0) cutting::require_spindle_speed(name, speed);
+  }
+  if (max_spindle_speed_rad_per_s > 0.0 && max_spindle_speed_rad_per_s <= min_spindle_speed_rad_per_s) {
+    throw InvalidInput("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s",
+                       "must be above the spindle's lowest speed");
+  }
+  cutting::require_depth_margin(depth_margin);
+  cutting::require_speed_window(speed_window);
+  for (std::size_t i = 0; i < spindle.size(); ++i) {
+    const std::string path = "spindle[" + std::to_string(i + 1) + "].";
+    const SpindleCapacity& p = spindle[i];
+    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s);
+    require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
+    require_non_negative((path + "power_w").c_str(), p.power_w, "W");
+    if (i > 0 && p.spindle_speed_rad_per_s <= spindle[i - 1].spindle_speed_rad_per_s) {
+      throw InvalidInput(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s, "rad/s",
+                         "must be above the speed of the point before it");
+    }
+  }
+}
+
 void RecommendOptions::validate() const {
+  machine.validate();
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");
   require_positive("radial_depth_m", radial_depth_m, "m");
   require_non_negative("diameter_m", diameter_m, "m");
   require_positive("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_positive("searched_depth_m", searched_depth_m, "m");
-  require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
-  if (!(depth_margin >= 0.0 && depth_margin < 1.0))
-    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
-  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
-    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
-  }
   if (alternatives < 0) throw InvalidInput("alternatives", alternatives, "", "must be >= 0");
 }
 

@@ -57,29 +57,36 @@ struct SpindleCapacity {
 /// What is kept where nobody says otherwise: share of the limit that a depth keeps off, at every speed within so much.
 inline constexpr double default_depth_margin = 0.2, default_speed_window = 0.02;
 
-/// What recommend needs to know of the cut and how careful it is.
-struct RecommendOptions {
-  int teeth = 0;                   ///< >= 1; required
-  double radial_depth_m = 0.0;     ///< > 0; required
-  double diameter_m = 0.0;         ///< of the cutter, for the cutting speed; 0: unknown
-  double feed_per_tooth_m = 0.0;   ///< > 0; required
-  double searched_depth_m = 0.0;   ///< largest depth that the limits were looked for at, > 0; required
-  double max_axial_depth_m = 0.0;  ///< the cutter's: depth <= max_axial_depth_m; 0: searched_depth_m
-  /// Mean cutting torque over a revolution of a depth [m], increasing [N m]; empty: none.
-  std::function<double(double)> mean_torque_n_m = {};
-  double min_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max
-  double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
-  std::vector<SpindleCapacity> spindle =
-      {};  ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
+/// What cutter and spindle allow, and how far off the limits conditions are kept.
+struct MachineLimits {
+  double max_axial_depth_m = 0.0;            ///< of the cutter, in [0, 0.5 m]; 0: not limited
+  double min_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max; min < max, each 0 or one that spindles have
+  double max_spindle_speed_rad_per_s = 0.0;  ///< 0: not limited
+  /// By increasing speed, torque and power >= 0; empty: not limited. Outside it the spindle gives nothing.
+  std::vector<SpindleCapacity> spindle = {};
   double depth_margin = default_depth_margin;  ///< in [0, 1); depth <= (1 - depth_margin) · limit …
   double speed_window = default_speed_window;  ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
-  int alternatives = 3;                        ///< >= 0; their speeds lie 5 % apart at least
+
+  ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field; of the curve "spindle[2].power_w"
+};
+
+/// What recommend needs to know of the cut and its machine.
+struct RecommendOptions {
+  int teeth = 0;                  ///< >= 1; required
+  double radial_depth_m = 0.0;    ///< > 0; required
+  double diameter_m = 0.0;        ///< of the cutter, for the cutting speed; 0: unknown
+  double feed_per_tooth_m = 0.0;  ///< > 0; required
+  double searched_depth_m = 0.0;  ///< largest depth that the limits were looked for at, > 0; required
+  /// Mean cutting torque over a revolution of a depth [m], increasing [N m]; empty: none.
+  std::function<double(double)> mean_torque_n_m = {};
+  MachineLimits machine = {};  ///< without max_axial_depth_m depths go to searched_depth_m
+  int alternatives = 3;        ///< >= 0; their speeds lie 5 % apart at least
 
   ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };
 
 /// Lowest and highest speed of the spindle, within its curve where there is one [rad/s]; 0: not said.
-[[nodiscard]] ROBOMILL_API std::array<double, 2> spindle_range(const RecommendOptions& options);
+[[nodiscard]] ROBOMILL_API std::array<double, 2> spindle_range(const MachineLimits& limits);
 
 /// A speed and depth to cut at.
 struct Operation {

@@ -7,6 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::decision {
 namespace recommend_test {
@@ -94,28 +95,28 @@ TEST(Recommend, AlternativesAreOtherSpeeds) {
 
 TEST(Recommend, ObeysCutterAndSpindle) {
   RecommendOptions o = options();
-  o.max_axial_depth_m = 0.1e-3;
+  o.machine.max_axial_depth_m = 0.1e-3;
   Operation op = *recommend(lobes(), o, lobe).recommended;
   EXPECT_EQ(op.limited_by, LimitedBy::cutter);
   EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.1e-3);
 
   o = options();
   o.mean_torque_n_m = [](double depth_m) { return 1000.0 * depth_m; };
-  o.spindle = {{.spindle_speed_rad_per_s = 300.0, .torque_n_m = 0.2, .power_w = 1e6},
-               {.spindle_speed_rad_per_s = 2000.0, .torque_n_m = 0.2, .power_w = 1e6}};
+  o.machine.spindle = {{.spindle_speed_rad_per_s = 300.0, .torque_n_m = 0.2, .power_w = 1e6},
+                       {.spindle_speed_rad_per_s = 2000.0, .torque_n_m = 0.2, .power_w = 1e6}};
   op = *recommend(lobes(), o, lobe).recommended;
   EXPECT_EQ(op.limited_by, LimitedBy::spindle_torque);
   EXPECT_NEAR(op.torque_n_m, 0.2, 1e-12);
 
-  o.spindle[0].torque_n_m = o.spindle[1].torque_n_m = 1e6;
-  o.spindle[0].power_w = o.spindle[1].power_w = 50.0;
+  o.machine.spindle[0].torque_n_m = o.machine.spindle[1].torque_n_m = 1e6;
+  o.machine.spindle[0].power_w = o.machine.spindle[1].power_w = 50.0;
   op = *recommend(lobes(), o, lobe).recommended;
   EXPECT_EQ(op.limited_by, LimitedBy::spindle_power);
   EXPECT_NEAR(op.power_w, 50.0, 1e-9);
 
   o = options();
-  o.min_spindle_speed_rad_per_s = 700.0;
-  o.max_spindle_speed_rad_per_s = 800.0;
+  o.machine.min_spindle_speed_rad_per_s = 700.0;
+  o.machine.max_spindle_speed_rad_per_s = 800.0;
   op = *recommend(lobes(), o, lobe).recommended;
   EXPECT_GE(op.spindle_speed_rad_per_s, 700.0);
   EXPECT_LE(op.spindle_speed_rad_per_s, 800.0);
@@ -178,24 +179,38 @@ TEST(Recommend, SaysWhenNothingIsSafe) {
   const auto none = [](double speed) { return chatter_at(speed, 0.0); };
   std::vector<DepthLimit> limits = {none(100.0), none(101.0), none(200.0)};
   RecommendOptions o = options();
-  o.speed_window = 0.005;
+  o.machine.speed_window = 0.005;
   Recommendation r = recommend(limits, o, none);
   EXPECT_EQ(r.status, Recommendation::Status::no_safe_depth);
   EXPECT_FALSE(r.reason.empty());
   EXPECT_FALSE(r.recommended.has_value());
-  o.min_spindle_speed_rad_per_s = 1000.0;
+  o.machine.min_spindle_speed_rad_per_s = 1000.0;
   r = recommend(limits, o, none);
   EXPECT_NE(r.reason.find("spindle's range"), std::string::npos);
 }
 
 TEST(Recommend, RejectsBadInput) {
   EXPECT_THROW(static_cast<void>(recommend({}, options(), lobe)), InvalidInput);
-  RecommendOptions o = options();
-  o.teeth = 0;
-  EXPECT_THROW(static_cast<void>(recommend(lobes(), o, lobe)), InvalidInput);
-  o = options();
-  o.depth_margin = 1.0;
-  EXPECT_THROW(static_cast<void>(recommend(lobes(), o, lobe)), InvalidInput);
+  const auto field = [](const auto& change) {
+    RecommendOptions o = options();
+    change(o);
+    return test::field_of([&] { static_cast<void>(recommend(lobes(), o, lobe)); });
+  };
+  EXPECT_EQ(field([](RecommendOptions& o) { o.teeth = 0; }), "teeth");
+  EXPECT_EQ(field([](RecommendOptions& o) { o.machine.depth_margin = 1.0; }), "depth_margin");
+  EXPECT_EQ(field([](RecommendOptions& o) { o.machine.speed_window = 0.5; }), "speed_window");
+  EXPECT_EQ(field([](RecommendOptions& o) { o.machine.max_axial_depth_m = 12.0; }), "max_axial_depth_m");
+  EXPECT_EQ(field([](RecommendOptions& o) {
+              o.machine.min_spindle_speed_rad_per_s = 800.0;
+              o.machine.max_spindle_speed_rad_per_s = 700.0;
+            }),
+            "max_spindle_speed_rad_per_s");
+  // A curve is read from its lower speed to its higher one: in another order it would give nothing anywhere.
+  EXPECT_EQ(field([](RecommendOptions& o) {
+              o.machine.spindle = {{.spindle_speed_rad_per_s = 2000.0, .torque_n_m = 1.0, .power_w = 1e3},
+                                   {.spindle_speed_rad_per_s = 300.0, .torque_n_m = 1.0, .power_w = 1e3}};
+            }),
+            "spindle[2].spindle_speed_rad_per_s");
 }
 
 }  // namespace recommend_test

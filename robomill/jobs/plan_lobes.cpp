@@ -209,7 +209,8 @@ bool ends_with_chart(const PlanResult& result) {
 
 void find_limits(PlanResult& result, Progress& progress) {
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
-  decision::RecommendOptions recommend = result.job.recommend;
+  decision::RecommendOptions recommend;
+  recommend.machine = result.job.recommend;
   recommend.radial_depth_m = result.cut.radial_depth_m;
   result.recommendation = decision::choose(result.cut.problem, result.cut.options, result.lobes.limit, recommend,
                                            result.job.finish, progress);

@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::monitor {
@@ -169,12 +170,8 @@ void AdviceOptions::validate() const {
   if (highest_rad_per_s <= lowest_rad_per_s) {
     throw InvalidInput("highest_rad_per_s", highest_rad_per_s, "rad/s", "must be above lowest_rad_per_s");
   }
-  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
-    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
-  }
-  if (!(depth_margin >= 0.0 && depth_margin < 1.0)) {
-    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
-  }
+  cutting::require_speed_window(speed_window);
+  cutting::require_depth_margin(depth_margin);
   require_non_negative("unfiltered_sample_rate_hz", unfiltered_sample_rate_hz, "Hz");
 }
 

@@ -36,7 +36,7 @@ struct DecideProblem {
   const ProgramBlocks& blocks;  ///< judged as programmed
   const DynamicsAt& dynamics;
   BlocksOptions blocks_options = {};
-  decision::RecommendOptions machine = {};  ///< its spindle, margin and window count
+  decision::MachineLimits machine = {};  ///< but for the depth of the cutter
   decision::FinishLimits finish = {};
   DecideOptions options = {};
   double max_tip_speed_m_per_s = 0.0;  ///< of the path; 0: not known

@@ -115,42 +115,8 @@ void read_cuts(io::TomlFile& file, Job& job) {
 }  // namespace
 
 void Job::validate() const {
-  require_non_negative("max_axial_depth_m", recommend.max_axial_depth_m, "m");
-  if (recommend.max_axial_depth_m > 0.5) {
-    throw InvalidInput("max_axial_depth_m", recommend.max_axial_depth_m, "m", "is deeper than any milling cut",
-                       "It is the length of the cutter's edges; are the units mixed up?");
-  }
+  recommend.validate();
   finish.validate();
-  const std::pair<const char*, double> range[] = {
-      {"min_spindle_speed_rad_per_s", recommend.min_spindle_speed_rad_per_s},
-      {"max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s}};
-  for (const auto& [name, speed] : range) {
-    if (speed != 0.0) cutting::require_spindle_speed(name, speed);
-  }
-  if (recommend.max_spindle_speed_rad_per_s > 0.0 &&
-      recommend.max_spindle_speed_rad_per_s <= recommend.min_spindle_speed_rad_per_s) {
-    throw InvalidInput("max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s, "rad/s",
-                       "must be above the spindle's lowest speed");
-  }
-  if (!(recommend.depth_margin >= 0.0 && recommend.depth_margin < 1.0)) {
-    throw InvalidInput("depth_margin", recommend.depth_margin, "", "must be in [0, 1)",
-                       "0.2 stays 20 % below the limit");
-  }
-  if (!(recommend.speed_window >= 0.0 && recommend.speed_window < 0.5)) {
-    throw InvalidInput("speed_window", recommend.speed_window, "", "must be in [0, 0.5)",
-                       "0.02 looks at 2 % of speed to each side");
-  }
-  for (std::size_t i = 0; i < recommend.spindle.size(); ++i) {
-    const std::string path = "spindle[" + std::to_string(i + 1) + "].";
-    const decision::SpindleCapacity& p = recommend.spindle[i];
-    cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s);
-    require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
-    require_non_negative((path + "power_w").c_str(), p.power_w, "W");
-    if (i > 0 && p.spindle_speed_rad_per_s <= recommend.spindle[i - 1].spindle_speed_rad_per_s) {
-      throw InvalidInput(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s, "rad/s",
-                         "must be above the speed of the point before it");
-    }
-  }
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     const std::string path = "cuts[" + std::to_string(i + 1) + "].";
     cutting::require_spindle_speed(path + "spindle_speed_rad_per_s", cuts[i].spindle_speed_rad_per_s);

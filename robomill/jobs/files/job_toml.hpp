@@ -59,7 +59,7 @@ struct Job {
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
   modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
   int fit_modes = 0;                             ///< 0: chosen by the fit
-  decision::RecommendOptions recommend = {};     ///< of the cutter, the spindle and safety; the cut has the rest
+  decision::MachineLimits recommend = {};
   decision::FinishLimits finish = {};
   process::DecideOptions decide = {};  ///< of a job that judges blocks
   std::vector<TestCut> cuts = {};

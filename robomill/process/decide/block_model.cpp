@@ -89,7 +89,7 @@ void BlockModel::add_leans(Progress& progress) {
 
 void BlockModel::set_search() {
   const DecideOptions& options = problem_.options;
-  const decision::RecommendOptions& machine = problem_.machine;
+  const decision::MachineLimits& machine = problem_.machine;
   search_.teeth = problem_.forces.cut.cutter.mill.teeth;
   search_.free_speed = options.is_free(Free::spindle_speed);
   search_.free_feed = options.is_free(Free::feed);

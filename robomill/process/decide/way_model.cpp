@@ -191,7 +191,7 @@ FeedRange WayModel::feeds(std::size_t line, double speed) const {
     range.least_m_per_s = range.most_m_per_s = units_.cuts[line].feed_m_per_s;
     return range;
   }
-  const decision::RecommendOptions& machine = setting_.problem->machine;
+  const decision::MachineLimits& machine = setting_.problem->machine;
   if (speed < machine.min_spindle_speed_rad_per_s * (1.0 - 1e-9)) {
     cap(range, 0.0, {ProgramLimit::spindle_range, speed, machine.min_spindle_speed_rad_per_s});
   }
