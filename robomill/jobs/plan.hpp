@@ -9,11 +9,11 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
+#include "robomill/decision/test_cuts.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
-#include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
 #include "robomill/process/blocks.hpp"
@@ -83,8 +83,8 @@ struct PlanResult {
   std::optional<process::BlocksJudging> judging;  ///< how its blocks were judged
   std::optional<process::Decision> decision;      ///< of a job that judges blocks and leaves something free
   std::optional<DecidedProgram> decided;          ///< where the decision found conditions
-  std::vector<ComparedCut> cuts;
-  std::vector<Recording> recordings;
+  std::vector<decision::ComparedCut> cuts;
+  std::vector<decision::Recording> recordings;
   std::vector<std::string> warnings, notes;
   std::vector<Assumption> assumed;  ///< of all stages
 

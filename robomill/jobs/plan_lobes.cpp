@@ -13,8 +13,8 @@
 #include "robomill/base/cost.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
+#include "robomill/decision/test_cuts.hpp"
 #include "robomill/jobs/files/in_words.hpp"
-#include "robomill/jobs/test_cuts.hpp"
 #include "robomill/process/vibration_text.hpp"
 
 namespace robomill::jobs {
@@ -122,19 +122,18 @@ void turn_feed(PlanResult& result, Progress& progress) {
 }
 
 void compare(PlanResult& result, Progress& progress) {
-  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
-  for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
-    const TestCut& cut = result.job.cuts[i];
-    if (cut.file.empty()) continue;
-    result.recordings.push_back(read_recording(cut, result.cut.problem));
+  using decision::Verdict;
+  result.cuts = decision::compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
+  for (decision::ComparedCut& row : result.cuts) {
+    if (row.cut.file.empty()) continue;
+    result.recordings.push_back(decision::judge_recording(row.cut, read_cut_signal(row.cut), result.cut.problem));
     const std::vector<std::string>& notes = result.recordings.back().notes;
     result.notes.insert(result.notes.end(), notes.begin(), notes.end());
-    const Recording& recording = result.recordings.back();
-    ComparedCut& row = result.cuts[i];
-    if (row.result == Verdict::unknown) {
-      row.result = recording.verdict;
-      const bool clear = row.result == Verdict::stable || row.result == Verdict::chatter;
-      if (clear) row.agrees = row.result == row.predicted;
+    const decision::Recording& recording = result.recordings.back();
+    if (row.cut.result == Verdict::unknown) {
+      row.cut.result = recording.verdict;
+      const bool clear = row.cut.result == Verdict::stable || row.cut.result == Verdict::chatter;
+      if (clear) row.agrees = row.cut.result == row.predicted;
     }
     row.note += "; " + recording.file + ": " + recording.reason;
   }

@@ -175,7 +175,7 @@ void add_details(std::string& out, const decision::Operation& op) {
 }
 
 /// On top: nothing that follows is worth more than the model.
-void add_disagreement(std::string& out, const Agreement& count) {
+void add_disagreement(std::string& out, const decision::Agreement& count) {
   if (count.disagree == 0) return;
   append(out, "test cuts    {} of {} disagree with the prediction: find out why before you use these numbers\n",
          count.disagree, count.agree + count.disagree);
@@ -268,7 +268,7 @@ std::string summary(const PlanResult& result) {
   if (result.decision) add_decision(out, result);
   const PlannedProgram& shown = result.shown();
   if (shown.blocks) add_blocks(out, *shown.forces, *shown.blocks);
-  const Agreement count = agreement(result.cuts);
+  const decision::Agreement count = decision::agreement(result.cuts);
   add_disagreement(out, count);
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {

@@ -97,12 +97,12 @@ void read_cuts(io::TomlFile& file, Job& job) {
   for (std::size_t i = 0; i < file.tables("cuts"); ++i) {
     const std::string row = "cuts[" + std::to_string(i) + "].";
     const std::string member = "cuts[" + std::to_string(i + 1) + "].";
-    TestCut cut;
+    decision::TestCut cut;
     file.require(row + "spindle_speed_rpm");
     file.require(row + "axial_depth_mm");
     file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
     file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
-    file.choice(row + "result", verdict_names, cut.result);
+    file.choice(row + "result", decision::verdict_names, cut.result);
     file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
     file.path(row + "file", cut.file);
     file.text(row + "column", cut.column);
@@ -124,10 +124,6 @@ void Job::validate() const {
     require_non_negative((path + "sample_rate_hz").c_str(), cuts[i].sample_rate_hz, "Hz");
     for (const double peak_hz : cuts[i].peaks_hz) require_positive((path + "peaks_hz").c_str(), peak_hz, "Hz");
   }
-}
-
-std::string_view to_string(Verdict verdict) {
-  return name_in(verdict_names, verdict);
 }
 
 Job read_job(const io::TomlSource& source) {
@@ -153,10 +149,10 @@ Job read_job(const io::TomlSource& source) {
   return job;
 }
 
-CutSignal read_cut_signal(const TestCut& cut) {
+decision::CutSignal read_cut_signal(const decision::TestCut& cut) {
   const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
   const std::size_t place = record.place(cut.column);
-  CutSignal out = {.acceleration = record.columns[place], .notes = record.notes};
+  decision::CutSignal out = {.acceleration = record.columns[place], .notes = record.notes};
   const std::string unit = record.unit(place);
   const io::SiFactor si = io::parse_unit(unit);
   if (si.quantity == io::Quantity::acceleration && !si.is_ratio) {

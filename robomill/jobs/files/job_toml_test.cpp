@@ -48,7 +48,7 @@ result = "chatter"
   EXPECT_DOUBLE_EQ(job.finish.max_surface_error_m, 12e-6);
   EXPECT_DOUBLE_EQ(job.finish.max_deflection_m, 30e-6);
   ASSERT_EQ(job.cuts.size(), 2U);
-  EXPECT_EQ(job.cuts[0].result, Verdict::chatter);
+  EXPECT_EQ(job.cuts[0].result, decision::Verdict::chatter);
   EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
 }
 
@@ -139,6 +139,21 @@ TEST_F(JobToml, AnswersSynonymsWithTheRightKey) {
                 .find("job.toml:5: cuts[1].rpm: is not known here. Here it is spindle_speed_rpm"),
             std::string::npos)
       << rejection(source + "[[cuts]]\nrpm = 6000\naxial_depth_mm = 1\n");
+}
+
+// The time column gives the rate; a column in g is converted.
+TEST_F(JobToml, ReadsWhatWasRecordedOfACut) {
+  decision::TestCut cut = {.file = write("cut.csv", "time_s,ax_m_per_s2,ay_g\n0,1,2\n0.001,3,4\n0.002,5,6\n")};
+  cut.column = "ax_m_per_s2";
+  const decision::CutSignal signal = read_cut_signal(cut);
+  EXPECT_NEAR(signal.sample_rate_hz, 1000.0, 1e-9);
+  EXPECT_EQ(signal.acceleration, Eigen::Vector3d(1.0, 3.0, 5.0));
+  cut.column = "ay_g";
+  EXPECT_NEAR(read_cut_signal(cut).acceleration(2), 6.0 * units::standard_gravity, 1e-12);
+  cut.file = write("no_time.csv", "ax_m_per_s2\n1\n2\n3\n");
+  cut.column = "1";
+  EXPECT_NE(test::rejection([&] { static_cast<void>(read_cut_signal(cut)); }).find("no time column"),
+            std::string::npos);
 }
 
 }  // namespace job_toml_test

@@ -31,10 +31,10 @@ Json text_or_null(std::string_view text) {
 
 Json cuts_json(const PlanResult& result) {
   Json rows = Json::array();
-  for (const ComparedCut& cut : result.cuts) {
-    rows.push_back({{"spindle_speed_rpm", number(cut.spindle_speed_rad_per_s / units::rpm)},
-                    {"axial_depth_mm", number(cut.axial_depth_m / units::mm)},
-                    {"result", text_or_null(to_string(cut.result))},
+  for (const decision::ComparedCut& cut : result.cuts) {
+    rows.push_back({{"spindle_speed_rpm", number(cut.cut.spindle_speed_rad_per_s / units::rpm)},
+                    {"axial_depth_mm", number(cut.cut.axial_depth_m / units::mm)},
+                    {"result", text_or_null(to_string(cut.cut.result))},
                     {"predicted", text_or_null(to_string(cut.predicted))},
                     {"limit_depth_mm", number(cut.limit_depth_m / units::mm)},
                     {"agrees", cut.agrees ? Json(*cut.agrees) : Json()},
@@ -137,7 +137,7 @@ Json operation_json(const decision::Operation& op) {
 Json decision_json(const PlanResult& result) {
   const auto limit = [](double value_m) { return value_m > 0.0 ? number(value_m / units::um) : Json(); };
   Json json;
-  const Agreement count = agreement(result.cuts);
+  const decision::Agreement count = decision::agreement(result.cuts);
   if (result.recommends()) json["facts"] = facts_json(result);
   json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
   json["recommended"] = result.recommendation.recommended ? operation_json(*result.recommendation.recommended) : Json();
@@ -169,9 +169,9 @@ Json decision_json(const PlanResult& result) {
 
 Json recordings_json(const PlanResult& result) {
   Json list = Json::array();
-  for (const Recording& recording : result.recordings) {
+  for (const decision::Recording& recording : result.recordings) {
     Json peaks = Json::array();
-    for (const Peak& peak : recording.peaks) {
+    for (const decision::Peak& peak : recording.peaks) {
       peaks.push_back({{"frequency_hz", number(peak.frequency_hz)},
                        {"amplitude", number(peak.amplitude)},
                        {"kind", to_string(peak.kind)},

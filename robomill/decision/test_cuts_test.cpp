@@ -1,18 +1,15 @@
-#include "robomill/jobs/test_cuts.hpp"
+#include "robomill/decision/test_cuts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "testing/robot_modes.hpp"
-#include "testing/support.hpp"
 
-namespace robomill::jobs {
+namespace robomill::decision {
 namespace test_cuts_test {
 
 /// Two teeth and the robot's eight modes.
@@ -69,23 +66,15 @@ class RecordedCut : public ::testing::Test {
  protected:
   // 6,000 rpm, three teeth: tooth passing at 300 Hz with amplitude 1, and something else at 1,234.5 Hz.
   Recording record(double chatter_amplitude, double length_s = 1.0, double chatter_hz = 1234.5) {
-    std::ofstream file(path_);
-    file << "time_s,ax_m_per_s2\n";
-    const double rate_hz = 8192.0;
-    for (int i = 0; i < static_cast<int>(length_s * rate_hz); ++i) {
-      const double t = i / rate_hz;
-      file << t << ","
-           << std::cos(2 * std::numbers::pi * 300.0 * t) + 0.2 * std::cos(2 * std::numbers::pi * 100.0 * t) +
-                  chatter_amplitude * std::cos(2 * std::numbers::pi * chatter_hz * t)
-           << "\n";
+    CutSignal recorded = {.acceleration = {}, .sample_rate_hz = 8192.0, .notes = {}};
+    recorded.acceleration.resize(static_cast<Eigen::Index>(length_s * recorded.sample_rate_hz));
+    for (Eigen::Index i = 0; i < recorded.acceleration.size(); ++i) {
+      const double t = static_cast<double>(i) / recorded.sample_rate_hz;
+      recorded.acceleration(i) = std::cos(2 * std::numbers::pi * 300.0 * t) +
+                                 0.2 * std::cos(2 * std::numbers::pi * 100.0 * t) +
+                                 chatter_amplitude * std::cos(2 * std::numbers::pi * chatter_hz * t);
     }
-    file.close();
-    TestCut cut;
-    cut.spindle_speed_rad_per_s = 6000 * units::rpm;
-    cut.axial_depth_m = 1e-3;
-    cut.file = path_;
-    cut.column = "ax_m_per_s2";
-    return read_recording(cut, problem_);
+    return judge_recording({.spindle_speed_rad_per_s = 6000 * units::rpm, .axial_depth_m = 1e-3}, recorded, problem_);
   }
 
   stability::LobesProblem problem_ = [] {
@@ -93,8 +82,6 @@ class RecordedCut : public ::testing::Test {
     problem.milling.tool.teeth = 3;
     return problem;
   }();
-  test::Folder folder_;
-  std::filesystem::path path_ = folder_.at("cut.csv");
 };
 
 TEST_F(RecordedCut, DistinguishesStableFromChatter) {
@@ -176,4 +163,4 @@ TEST(Agreement, CountsEveryCutOnce) {
 }
 
 }  // namespace test_cuts_test
-}  // namespace robomill::jobs
+}  // namespace robomill::decision

@@ -1,4 +1,4 @@
-#include "robomill/jobs/test_cuts.hpp"
+#include "robomill/decision/test_cuts.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "robomill/signal/spectrum.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
-namespace robomill::jobs {
+namespace robomill::decision {
 namespace {
 
 /// A reading in short: "2 × tooth passing", "9 × rotation + mode 1", "mode 7 − 1 × rotation".
@@ -153,6 +153,10 @@ Peak named(const stability::ExplainedPeak& peak, int teeth) {
 
 }  // namespace
 
+std::string_view to_string(Verdict verdict) {
+  return name_in(verdict_names, verdict);
+}
+
 std::vector<Peak> name_peaks(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
                              const stability::LobesProblem& problem, double tolerance_hz) {
   std::vector<Peak> out;
@@ -188,15 +192,13 @@ std::vector<ComparedCut> compare_cuts(const std::vector<TestCut>& cuts, const st
           {.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s, .axial_depth_m = cut.axial_depth_m});
       const stability::Limit limit = stability::limit_depths(problem, options, {cut.spindle_speed_rad_per_s}).front();
       ComparedCut& row = out[i];
-      row.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
-      row.axial_depth_m = cut.axial_depth_m;
-      row.result = cut.result;
+      row.cut = cut;
       row.predicted = point.stable ? Verdict::stable : Verdict::chatter;
       if (limit.status == stability::Limit::Status::found) row.limit_depth_m = limit.axial_depth_m;
-      if (row.result == Verdict::borderline) {
+      if (cut.result == Verdict::borderline) {
         row.agrees = std::abs(row.limit_depth_m / cut.axial_depth_m - 1.0) <= 0.2;
-      } else if (row.result != Verdict::unknown) {
-        row.agrees = row.result == row.predicted;
+      } else if (cut.result != Verdict::unknown) {
+        row.agrees = cut.result == row.predicted;
       }
       row.note = note_on(cut, point, problem);
       progress.advance();
@@ -205,8 +207,7 @@ std::vector<ComparedCut> compare_cuts(const std::vector<TestCut>& cuts, const st
   return out;
 }
 
-Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem) {
-  const CutSignal recorded = read_cut_signal(cut);
+Recording judge_recording(const TestCut& cut, const CutSignal& recorded, const stability::LobesProblem& problem) {
   const double length_s = static_cast<double>(recorded.acceleration.size()) / recorded.sample_rate_hz;
   if (length_s < 0.2) throw InvalidInput(cut.file.string(), length_s, "s", "must be at least 0.2 s of cutting");
 
@@ -238,4 +239,4 @@ Recording read_recording(const TestCut& cut, const stability::LobesProblem& prob
   return out;
 }
 
-}  // namespace robomill::jobs
+}  // namespace robomill::decision

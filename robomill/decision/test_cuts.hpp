@@ -1,26 +1,57 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
-#include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
-// Method: robomill/jobs/README.md, "Test cuts (`test_cuts.hpp`)"
+// Method: robomill/decision/README.md, "Test cuts (`test_cuts.hpp`)"
 
-namespace robomill::jobs {
+namespace robomill::decision {
 
+/// What a cut did, or is predicted to do. Of a recording by the ratio r of its highest peak that is no multiple of the
+/// rotation to the highest multiple.
+enum class Verdict {
+  unknown,     ///< nobody said, or a recording that may be either: the cut is predicted and not compared
+  stable,      ///< no chatter. Predicted: |μ| < 1; recorded: r < 0.25
+  borderline,  ///< marks that come and go; agrees where |predicted limit / depth - 1| <= 0.2; recorded: 0.25 <= r < 0.5
+  chatter      ///< predicted: |μ| >= 1; recorded: r >= 0.5
+};
+inline constexpr Name<Verdict> verdict_names[] = {
+    {"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}};
+/// "stable", …; empty where it is unknown.
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Verdict verdict);
+
+/// What a machinist saw and measured at one test cut.
+struct TestCut {
+  double spindle_speed_rad_per_s = 0.0;  ///< > 0
+  double axial_depth_m = 0.0;            ///< > 0
+  Verdict result = Verdict::unknown;
+  std::vector<double> peaks_hz = {};  ///< peaks of its spectrum, where known
+  std::filesystem::path file = {};    ///< its recording, where there is one
+  std::string column = "1";           ///< the recording's column, name or number from 1
+  double scale = 1.0;                 ///< of a WAV: what full scale means, in m/s²
+  double sample_rate_hz = 0.0;        ///< of a recording without a time column; 0: from the file
+};
+
+/// What was recorded of a test cut.
+struct CutSignal {
+  Eigen::VectorXd acceleration;         ///< length n [m/s^2]
+  double sample_rate_hz = 0.0;          ///< > 0
+  std::vector<std::string> notes = {};  ///< sentences for the user
+};
 /// A cut that was made, beside what was predicted for it.
 struct ComparedCut {
-  double spindle_speed_rad_per_s = 0.0;
-  double axial_depth_m = 0.0;
-  Verdict result = Verdict::unknown;  ///< as made
+  TestCut cut = {};
   Verdict predicted = Verdict::unknown;
   double limit_depth_m = std::numeric_limits<double>::quiet_NaN();  ///< predicted at this speed; NaN: none in the range
   std::optional<bool> agrees = {};                                  ///< none where there is nothing to compare
@@ -72,7 +103,8 @@ struct Recording {
 /// The spectrum of a cut's recording with its peaks named. It says chatter where a peak that is no multiple of the
 /// rotation is at least half as high as the highest multiple; borderline from a quarter; nothing where that hangs on a
 /// peak that may be either.
-/// @throws InvalidInput if the recording cannot be read or is shorter than 0.2 s
-[[nodiscard]] ROBOMILL_API Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem);
+/// @throws InvalidInput if the recording is shorter than 0.2 s
+[[nodiscard]] ROBOMILL_API Recording judge_recording(const TestCut& cut, const CutSignal& recorded,
+                                                     const stability::LobesProblem& problem);
 
-}  // namespace robomill::jobs
+}  // namespace robomill::decision
