@@ -18,6 +18,7 @@
 #include "robomill/coupling/files/tools_csv.hpp"
 #include "robomill/coupling/holder.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/coupling/prediction.hpp"
 #include "robomill/cutting/coefficients.hpp"
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/cutting/default_stock.hpp"

@@ -47,8 +47,8 @@ void warn_of_distance(const TipPrediction& prediction, std::vector<std::string>&
     std::string text = fmt::format("The predicted {} differs from the measured one by {:.0f} %",
                                    modal::to_string(error.name), 100.0 * error.relative);
     // Of a round tool the peaks stand in x alone, for both.
-    const auto peak = std::ranges::find_if(prediction.peaks,
-                                           [&](const TipPeak& p) { return prediction.round || p.name == error.name; });
+    const auto peak = std::ranges::find_if(
+        prediction.peaks, [&](const coupling::TipPeak& p) { return prediction.round || p.name == error.name; });
     if (peak != prediction.peaks.end()) {
       text += fmt::format(": its first peak is predicted at {:.6g} Hz, ", peak->frequency_hz);
       text += std::isfinite(peak->measured_frequency_hz)
@@ -131,8 +131,8 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
     options.band_high_hz = high_hz;
   }
   options.exponential_decay_per_s = result.added_decay_per_s;
-  result.fit =
-      result.prediction ? fit_tip(*result.frfs, options, progress) : modal::fit_modes(*result.frfs, options, progress);
+  result.fit = result.prediction ? coupling::fit_tip(*result.frfs, options, progress)
+                                 : modal::fit_modes(*result.frfs, options, progress);
   if (directions.equal) result.fit = modal::with_equal_directions(*std::move(result.fit));
   result.model = result.fit->model;
   append(result.warnings, result.fit->warnings);

@@ -1,6 +1,5 @@
 #pragma once
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,21 +8,12 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
-#include "robomill/modal/fit.hpp"
+#include "robomill/coupling/prediction.hpp"
 #include "robomill/modal/frf.hpp"
 
 // Method: robomill/jobs/README.md, "From an assembly (`predict.hpp`)"
 
 namespace robomill::jobs {
-
-/// A peak of a predicted FRF.
-struct TipPeak {
-  modal::FrfName name;
-  double frequency_hz = 0.0;
-  double receptance_m_per_n = 0.0;  ///< its magnitude
-  /// Of the measured peak nearest to it; NaN: there is none.
-  double measured_frequency_hz = std::numeric_limits<double>::quiet_NaN();
-};
 
 /// The tip of an assembly as predicted, and how far a measurement of it is away.
 struct TipPrediction {
@@ -33,7 +23,7 @@ struct TipPrediction {
   std::optional<modal::FrfSet> measured;  ///< of what was measured the FRFs that were predicted too, within the range
   /// Of each measured FRF, ‖predicted - measured‖ / ‖measured‖ over its lines.
   std::vector<modal::FrfFitError> error;
-  std::vector<TipPeak> peaks;  ///< the first ones of each FRF on the diagonal; of a round tool of xx alone
+  std::vector<coupling::TipPeak> peaks;
   std::vector<std::string> notes;
   /// The measured holder's receptances, with their deviation where they were found from a measurement: whoever couples
   /// to them sees which lines are bad. Empty without a measured holder.
@@ -51,24 +41,7 @@ struct TipPrediction {
                                                      Progress& progress = Progress::none(),
                                                      const std::filesystem::path& joint = {});
 
-/// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
-/// y.
-/// @throws InvalidInput as fit_modes
-[[nodiscard]] ROBOMILL_API modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options,
-                                                    Progress& progress);
-
 /// tip.json with the lines that are not to be trusted, and why.
 [[nodiscard]] ROBOMILL_API std::string tip_json(const TipPrediction& prediction);
-
-/// A frequency at which a receptance is greatest.
-struct PeakFound {
-  double frequency_hz = 0.0;
-  double magnitude = 0.0;
-};
-
-/// Local maxima of |H| that stand by half above the higher of the minima to either side, between the lines by a
-/// parabola through log |H|.
-[[nodiscard]] ROBOMILL_API std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz,
-                                                             const Eigen::VectorXcd& receptance);
 
 }  // namespace robomill::jobs

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
-#include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/io/file.hpp"
@@ -37,35 +35,6 @@ TEST(JointBar, PeaksAreThoseOfTheReadme) {
   EXPECT_NEAR(first_peak_hz("rigid.toml"), clamped_hz, 2e-4 * clamped_hz);
   EXPECT_NEAR(first_peak_hz("assembly.toml"), 294.32, 0.02);
   EXPECT_NEAR(first_peak_hz("soft.toml"), 275.0, 0.1);
-}
-
-TEST(FindPeaks, LieBetweenTheLinesAndNotInTheNoise) {
-  Random random(4);
-  const Eigen::VectorXd axis = Eigen::VectorXd::LinSpaced(400, 101.0, 899.0);  // every 2 Hz
-  Eigen::VectorXcd values(axis.size());
-  const auto mode = [](double f, double f0, double zeta) {
-    return 1.0 / std::complex<double>(1.0 - f * f / (f0 * f0), 2.0 * zeta * f / f0);
-  };
-  for (Eigen::Index i = 0; i < axis.size(); ++i) {
-    const std::complex<double> noise(random.normal(), random.normal());
-    const std::complex<double> exact = mode(axis(i), 300.4, 0.02) - 0.3 * mode(axis(i), 650.9, 0.015);
-    values(i) = exact + 0.002 * noise * std::abs(exact);
-  }
-  const std::vector<PeakFound> found = find_peaks(axis, values);
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_NEAR(found[0].frequency_hz, 300.4, 0.3);
-  EXPECT_NEAR(found[0].magnitude, 25.0, 0.3);
-  EXPECT_NEAR(found[1].frequency_hz, 650.9, 0.5);
-}
-
-// The second mode of the bar, 1,847 Hz, lies 10 Hz behind the last line: its flank is no mode of the fit.
-TEST(FitTip, WarnsWhereAModeStandsCloseBehindTheLastLine) {
-  TipPrediction prediction = predict_tip(examples / "joint-bar/rigid.toml", {});
-  EXPECT_TRUE(fit_tip(prediction.tip.frfs, {}, Progress::none()).warnings.empty());
-  prediction.tip = coupling::tip_frfs(prediction.file.assembly, Eigen::VectorXd::LinSpaced(919, 1.0, 1837.0));
-  const modal::FitResult fit = fit_tip(prediction.tip.frfs, {}, Progress::none());
-  ASSERT_FALSE(fit.warnings.empty()) << fit.relative_error;
-  EXPECT_NE(fit.warnings.back().find("close beyond the last line"), std::string::npos) << fit.relative_error;
 }
 
 class Predicted : public ::testing::Test {

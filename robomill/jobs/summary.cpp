@@ -277,7 +277,7 @@ std::string summary(const PlanResult& result) {
     }
   }
   if (result.prediction && !result.prediction->peaks.empty()) {
-    const TipPeak& first = result.prediction->peaks.front();
+    const coupling::TipPeak& first = result.prediction->peaks.front();
     append(out, "predicted    first peak of {} at {:.1f} Hz, {:.3g} µm/N\n", modal::to_string(first.name),
            first.frequency_hz, first.receptance_m_per_n / units::um);
   }

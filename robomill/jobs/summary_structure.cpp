@@ -59,7 +59,7 @@ void add_modes(std::string& out, const modal::ModalModel& model, Bounds bounds_o
 void add_tip_peaks(std::string& out, const TipPrediction& prediction, const modal::FrfName& frf) {
   const std::string name = modal::to_string(frf);
   bool any = false;
-  for (const TipPeak& peak : prediction.peaks) {
+  for (const coupling::TipPeak& peak : prediction.peaks) {
     if (peak.name != frf) continue;
     any = true;
     io::append(out, "{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, peak.frequency_hz,

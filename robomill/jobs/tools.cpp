@@ -7,9 +7,9 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/prediction.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/decision/choose.hpp"
-#include "robomill/jobs/predict.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -54,7 +54,7 @@ void find_peak(ToolResult& out) {
 void fit(ToolResult& out, std::uint64_t seed) {
   modal::FitOptions options;
   options.seed = seed;
-  const modal::FitResult found = fit_tip(out.tip, options, Progress::none());
+  const modal::FitResult found = coupling::fit_tip(out.tip, options, Progress::none());
   out.modes = found.model;
   out.fit_error = found.relative_error;
   out.notes.insert(out.notes.end(), found.warnings.begin(), found.warnings.end());

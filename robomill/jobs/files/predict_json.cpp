@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "robomill/base/units.hpp"
-#include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/coupling/files/assembly_json.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/predict.hpp"
@@ -12,40 +12,6 @@ namespace {
 
 using io::Json;
 using io::number;
-
-/// In the keys of assembly.toml.
-Json segments_json(const std::vector<coupling::Segment>& segments) {
-  Json list = Json::array();
-  for (const coupling::Segment& s : segments) {
-    Json row = {{"length_mm", number(s.length_m / units::mm)},
-                {"diameter_mm", number(s.diameter_m / units::mm)},
-                {"inner_diameter_mm", number(s.inner_diameter_m / units::mm)},
-                {"youngs_modulus_gpa", number(s.youngs_modulus_pa / units::gpa)}};
-    if (s.mass_kg > 0.0) row["mass_kg"] = number(s.mass_kg);
-    if (s.density_kg_per_m3 > 0.0) row["density_kg_per_m3"] = number(s.density_kg_per_m3);
-    row["poissons_ratio"] = number(s.poissons_ratio);
-    row["loss_factor"] = number(s.loss_factor);
-    if (s.flutes > 0) {
-      row["flutes"] = s.flutes;
-      row["flute_diameter_ratio"] = number(s.flute_diameter_ratio);
-    }
-    row["beam"] = name_in(coupling::beam_names, s.beam);
-    list.push_back(std::move(row));
-  }
-  return list;
-}
-
-Json joint_json(const coupling::Joint& joint) {
-  Json out;
-  for (const io::Field<coupling::Joint>& field : coupling::joint_fields) out[field.key] = number(joint.*field.value);
-  out["cross_stiffness_n_per_rad"] = number(joint.cross_stiffness_n_per_rad);
-  out["points"] = joint.points;
-  if (joint.points > 1) {
-    out["insertion_length_mm"] = number(joint.insertion_length_m / units::mm);
-    out["shank"] = segments_json(joint.shank);
-  }
-  return out;
-}
 
 Json lines_json(const std::vector<double>& lines_hz) {
   Json list = Json::array();
@@ -74,12 +40,12 @@ Json prediction_object(const TipPrediction& prediction) {
   const coupling::Assembly& assembly = prediction.file.assembly;
   Json holder = Json::object();
   if (assembly.holder.receptances.frfs.empty()) {
-    holder["segments"] = segments_json(assembly.holder.segments);
+    holder["segments"] = coupling::segments_json(assembly.holder.segments);
   } else {
     holder["receptances"] = prediction.file.receptances.filename().string();
   }
   Json peaks = Json::array();
-  for (const TipPeak& peak : prediction.peaks) {
+  for (const coupling::TipPeak& peak : prediction.peaks) {
     peaks.push_back({{"frf", modal::to_string(peak.name)},
                      {"frequency_hz", number(peak.frequency_hz)},
                      {"receptance_m_per_n", number(peak.receptance_m_per_n)},
@@ -89,8 +55,8 @@ Json prediction_object(const TipPrediction& prediction) {
   for (const modal::FrfFitError& one : prediction.error) error[modal::to_string(one.name)] = number(one.relative);
   Json json;
   json["file"] = prediction.file.path.filename().string();
-  json["tool"] = segments_json(assembly.tool);
-  json["joint"] = assembly.joint ? joint_json(*assembly.joint) : Json();
+  json["tool"] = coupling::segments_json(assembly.tool);
+  json["joint"] = assembly.joint ? coupling::joint_json(*assembly.joint) : Json();
   json["holder"] = std::move(holder);
   json["peaks"] = std::move(peaks);
   json["relative_error"] = prediction.measured ? std::move(error) : Json();
