@@ -3,21 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/monitor_plan.hpp"
-#include "robomill/process/blocks/stand_at.hpp"
-#include "robomill/process/decide/block_times.hpp"
-#include "robomill/process/decide/motion_loads.hpp"
-#include "robomill/robot/inverse.hpp"
-#include "robomill/robot/pose.hpp"
+#include "robomill/process/written_program.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
@@ -92,128 +85,8 @@ void write_program(PlanResult& result, const cell::Cell& cell, Checked checked) 
                                program_of(*result.decided), header_of(result, checked));
 }
 
-/// A program as its text says it, for a robot that is to run it.
-class WrittenProgram {
- public:
-  WrittenProgram(const std::string& name, const std::string& text, const program::ProgramReading& reading,
-                 const program::Program& wanted)
-      : wanted_(wanted), read_(program::read_program_text(text, name, reading)) {
-    // A move that turns the tool may be read as several blocks, and rapids that run on as fewer.
-    std::size_t next = 0;
-    for (const program::Block& block : read_.blocks) {
-      std::size_t k = next;
-      while (k + 1 < wanted.blocks.size() && !same_end(block, wanted.blocks[k]) &&
-             wanted.blocks[k].kind == program::Block::Kind::rapid) {
-        ++k;
-      }
-      const bool ends = same_end(block, wanted.blocks[k]);
-      block_of_.push_back(ends ? k : next);
-      if (ends) next = std::min(k + 1, wanted.blocks.size() - 1);
-    }
-  }
-  /// As it is read.
-  [[nodiscard]] const program::Program& read() const { return read_; }
-  /// Of each block that is read the one that was wanted.
-  [[nodiscard]] const std::vector<std::size_t>& block_of() const { return block_of_; }
-  /// Of values at the wanted program's start and at each block's end those of the program that is read.
-  [[nodiscard]] std::vector<double> along(const std::vector<double>& wanted) const {
-    std::vector<double> out = {wanted.front()};
-    for (std::size_t i = 0; i < read_.blocks.size(); ++i) {
-      const std::size_t k = block_of_[i];
-      const Eigen::Vector3d& from_m = wanted_.begin_of(k).tip_m;
-      const double way_m = (wanted_.blocks[k].end.tip_m - from_m).norm();
-      const bool part = way_m > 0.0 && !same_end(read_.blocks[i], wanted_.blocks[k]);
-      const double share = part ? std::min((read_.blocks[i].end.tip_m - from_m).norm() / way_m, 1.0) : 1.0;
-      out.push_back(std::lerp(wanted[k], wanted[k + 1], share));
-    }
-    return out;
-  }
-
- private:
-  static bool same_end(const program::Block& a, const program::Block& b) {
-    constexpr double same_m = 1e-6, same_axis = 1e-6;
-    return a.kind == b.kind && (a.end.tip_m - b.end.tip_m).norm() <= same_m &&
-           (a.end.axis - b.end.axis).norm() <= same_axis;
-  }
-  const program::Program& wanted_;
-  program::Program read_;
-  std::vector<std::size_t> block_of_ = {};
-};
-
-/// Where the machine starts and how the flange stands along a program, turned by γ from where it was along the one that
-/// was smoothed.
-path::Posture posture_of(const process::SmoothResult& smoothed, const WrittenProgram& written,
-                         const program::Program& program, const std::vector<double>& gamma_offset_rad,
-                         const cell::Cell& cell) {
-  const path::Posture& before = smoothed.posture.posture;
-  path::Posture out = before;
-  if (out.gamma_rad.empty()) out.gamma_rad = {cell.redundant_gamma_rad};
-  if (!gamma_offset_rad.empty() || out.gamma_rad.size() > 1) {
-    out.gamma_rad.resize(program.blocks.size() + 1, out.gamma_rad.front());
-    for (std::size_t i = 0; i < gamma_offset_rad.size(); ++i) out.gamma_rad[i] += gamma_offset_rad[i];
-    out.gamma_rad = written.along(out.gamma_rad);
-  }
-  const std::optional<Eigen::VectorXd> joints = process::stand_at(
-      cell.cell, robot::spherical_wrist(cell.cell.arm),
-      {.tip_m = program.start.tip_m, .axis = program.start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
-  if (!joints) {
-    throw InvalidInput("gamma", out.gamma_rad.front() / units::deg, "°", "cannot be taken where the program starts");
-  }
-  out.start = *joints;
-  return out;
-}
-
-/// The decided program as the robot will run it.
-void smooth_decided(PlanResult& result, const cell::Cell& cell, const std::filesystem::path& folder,
-                    Progress& progress) {
-  const process::SmoothResult& before = *result.programmed.path;
-  DecidedProgram& decided = *result.decided;
-  const program::Program& wanted = program_of(decided);
-  const WrittenProgram written(decided.name, decided.text->text, reading_of(result, cell), wanted);
-  process::SmoothOptions options = {
-      .place = false,
-      .posture = posture_of(before, written, wanted, result.decision->gamma_offset_rad, cell),
-      .cutter = decided.forces->cut.cutter};
-  if (!folder.empty()) options.output = folder / "trajectory.csv";
-  program::ProgramSource source(written.read());
-  decided.path = process::smooth(source, decided.name, cell, before.smoothing, options, progress);
-}
-
-/// A program that was run and judged, turned by γ.
-struct TurnedRun {
-  const process::ForcesResult& forces;
-  const process::ProgramBlocks& blocks;
-  const std::vector<double>& gamma_rad;
-};
-
-/// What the robot makes of a program, by the trajectory that it would be smoothed to.
-process::RobotRun robot_run(const PlanResult& result, const cell::Cell& cell, const TurnedRun& run,
-                            Progress& progress) {
-  const program::Program& program = run.forces.program->program;
-  const std::string name = program_name(result.job);
-  const program::ProgramReading reading = reading_of(result, cell);
-  const program::Rewritten text =
-      program::rewrite_program(result.job.program, reading, program_of(result.programmed), program);
-  const WrittenProgram written(name, text.text, reading, program);
-  const process::SmoothResult& before = *result.programmed.path;
-  const path::SmoothingFile& smoothing = before.smoothing;
-  std::optional<process::MotionLoads> loads;
-  if (process::knows_torques(cell)) loads.emplace(cell, smoothing.options.sample_period_s, written.block_of());
-  process::BlockTimes times(written.block_of());
-  const process::SmoothOptions options = {.record = false,
-                                          .place = false,
-                                          .posture = posture_of(before, written, program, run.gamma_rad, cell),
-                                          .check_collisions = false,
-                                          .observe = [&](std::span<const path::Sample> samples) {
-                                            times.add(samples);
-                                            if (loads) loads->add(samples);
-                                          }};
-  program::ProgramSource source(written.read());
-  const process::SmoothResult smoothed = process::smooth(source, name, cell, smoothing, options, progress);
-  process::RobotRun out = {
-      .time_s = smoothed.first().summary.duration_s, .block_time_s = times.times_s(), .torque_shares = {}};
-  if (loads) out.torque_shares = loads->shares(run.forces, run.blocks.joint_loads);
-  return out;
+process::ProgrammedPath programmed_path(const PlanResult& result) {
+  return {.path = *result.programmed.path, .program = program_of(result.programmed), .file = result.job.program};
 }
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.
@@ -290,7 +163,7 @@ void decide_conditions(PlanResult& result, const cell::Cell& cell, const process
     problem.max_tip_speed_m_per_s = before->smoothing.options.max_velocity_m_per_s;
     problem.robot_run = [&](const process::ForcesResult& run, const process::ProgramBlocks& judged,
                             const std::vector<double>& gamma_offset_rad) {
-      return robot_run(result, cell, {.forces = run, .blocks = judged, .gamma_rad = gamma_offset_rad}, progress);
+      return process::run_on_robot(programmed_path(result), cell, {run, gamma_offset_rad}, judged, progress);
     };
   }
   process::DecideResult found = process::decide(problem, progress);
@@ -303,8 +176,13 @@ void decide_conditions(PlanResult& result, const cell::Cell& cell, const process
   result.decision = static_cast<process::Decision&&>(found);
   if (result.decided) {
     write_program(result, cell, Checked::block_ends);
-    if (before) smooth_decided(result, cell, folder, progress);
-    if (before) write_program(result, cell, Checked::trajectory);  // the same lines, whose head says what was checked
+    if (before) {
+      const std::filesystem::path output = folder.empty() ? folder : folder / "trajectory.csv";
+      result.decided->path = process::smooth_written(
+          programmed_path(result), cell, {*result.decided->forces, result.decision->gamma_offset_rad},
+          {.name = result.decided->name, .text = result.decided->text->text, .output = output}, progress);
+      write_program(result, cell, Checked::trajectory);  // the same lines, whose head says what was checked
+    }
     finish_decided(result, dynamics);
   }
   if (before) withdraw(*before);
