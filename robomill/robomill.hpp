@@ -34,6 +34,7 @@
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/decision/finish.hpp"
+#include "robomill/decision/limit_breakdown.hpp"
 #include "robomill/decision/program_decision.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/decision/test_cuts.hpp"

@@ -8,6 +8,7 @@
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/decision/limit_breakdown.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/decision/test_cuts.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
@@ -27,21 +28,6 @@
 // Method: robomill/jobs/README.md, "What `robomill plan` does (`plan.hpp`)"
 
 namespace robomill::jobs {
-
-/// Limits of some modes alone.
-struct PartLimits {
-  std::string label = {};                        ///< "modes 1–2"
-  std::vector<int> modes = {};                   ///< from 1
-  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
-  Eigen::VectorXd limit_depth_m = {};            ///< length n; NaN: none up to the deepest cut of the lobes
-};
-
-/// The limit over the direction of the feed. NaN: none up to the deepest cut of the lobes.
-struct FeedDirections {
-  Eigen::VectorXd direction_rad = {};     ///< length n, increasing, counter-clockwise from x of the FRFs
-  Eigen::VectorXd lowest_limit_m = {};    ///< length n, lowest over all speeds
-  Eigen::VectorXd limit_at_speed_m = {};  ///< length n, at the recommended speed; empty where none was recommended
-};
 
 /// The files of a planned monitor, which stand in one folder.
 struct PlannedMonitor {
@@ -74,10 +60,10 @@ struct PlanResult {
   double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
   std::optional<modal::FitResult> fit;      ///< unless the job starts from modes
   modal::ModalModel model;
-  stability::LobesResult lobes;          ///< of all modes; empty where these do not describe the FRFs
-  stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
-  std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
-  std::optional<FeedDirections> feed_directions;
+  stability::LobesResult lobes;             ///< of all modes; empty where these do not describe the FRFs
+  stability::UncertainLimits uncertain;     ///< samples: 0 where nothing is known to be uncertain
+  std::vector<decision::PartLimits> pairs;  ///< of modes 1–2, 3–4, …
+  std::optional<decision::FeedDirections> feed_directions;
   decision::Recommendation recommendation;
   PlannedProgram programmed;                      ///< the program as it is
   std::optional<process::BlocksJudging> judging;  ///< how its blocks were judged
@@ -135,23 +121,5 @@ inline constexpr std::uint64_t default_seed = 1;
 /// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
 /// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was asked to.
 ROBOMILL_API void write_plan(const std::filesystem::path& folder, const PlanResult& result);
-
-/// One line for people: what limits an operation.
-[[nodiscard]] ROBOMILL_API std::string limited_by_text(const decision::Operation& operation);
-
-/// Depth over spindle speed that something else than chatter limits.
-struct DepthCurve {
-  std::string label = {};                        ///< "spindle torque"
-  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
-  Eigen::VectorXd axial_depth_m = {};            ///< length n
-};
-/// Of the spindle's torque and power, and of the cutter, as far as the job gives them.
-[[nodiscard]] ROBOMILL_API std::vector<DepthCurve> other_limits(const PlanResult& result);
-
-/// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
-struct LimitShare {
-  Eigen::VectorXd tool, workpiece;  ///< one a mode of each
-};
-[[nodiscard]] ROBOMILL_API LimitShare limit_share(const PlanResult& result);
 
 }  // namespace robomill::jobs

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,46 +18,6 @@
 
 namespace robomill::jobs {
 namespace {
-
-constexpr Eigen::Index feed_directions = 36;
-constexpr int speeds_a_direction = 40;
-/// Depths at which the comparisons beside the main lobes look for the limit, before they refine it.
-constexpr int comparison_depths = 30;
-constexpr int comparison_speeds = 100;
-
-stability::LobesOptions comparison_options(const PlanResult& result) {
-  stability::LobesOptions options = result.cut.options;
-  options.grid[1] = std::min(options.grid[1], comparison_depths);
-  return options;
-}
-
-/// The limit of each pair of neighbouring modes alone.
-void pairs(PlanResult& result, Progress& progress) {
-  const int modes = static_cast<int>(result.model.modes.size());
-  if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
-  const stability::LobesOptions options = comparison_options(result);
-  const Eigen::Index count = std::min<Eigen::Index>(options.grid[0], comparison_speeds);
-  const Eigen::VectorXd axis =
-      Eigen::VectorXd::LinSpaced(count, options.spindle_speed_rad_per_s[0], options.spindle_speed_rad_per_s[1]);
-  const std::vector<double> speeds(axis.begin(), axis.end());
-  for (int k = 1; k <= modes; k += 2) {
-    stability::LobesProblem problem = result.cut.problem;
-    problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
-    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
-    PartLimits part;
-    part.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
-    if (!problem.workpiece_dynamics.modes.empty()) part.label += " and the workpiece's";
-    part.modes = problem.keep_modes;
-    part.spindle_speed_rad_per_s = axis;
-    part.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      const bool found = limits[i].status == stability::Limit::Status::found;
-      part.limit_depth_m(static_cast<Eigen::Index>(i)) =
-          found ? limits[i].axial_depth_m : std::numeric_limits<double>::quiet_NaN();
-    }
-    result.pairs.push_back(std::move(part));
-  }
-}
 
 /// Of the vibration at the recommended cut: which harmonic makes most of it, and which mode answers.
 void report_vibration(PlanResult& result) {
@@ -78,47 +37,6 @@ void report_vibration(PlanResult& result) {
   result.warnings.push_back(
       text + (result.job.finish.any() ? " It keeps the limits of [finishing]."
                                       : " A speed off its resonance vibrates less; [finishing] in the job limits it."));
-}
-
-/// The limit as the feed turns through the plane: a robot is not the same in every direction.
-void turn_feed(PlanResult& result, Progress& progress) {
-  FeedDirections out;
-  const stability::LobesOptions options = comparison_options(result);
-  const double low = options.spindle_speed_rad_per_s[0];
-  const double high = options.spindle_speed_rad_per_s[1];
-  std::vector<double> speeds;
-  speeds.reserve(speeds_a_direction + 1);
-  for (int i = 0; i < speeds_a_direction; ++i)
-    speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
-  const bool recommended = result.recommendation.recommended.has_value();
-  if (recommended) {
-    speeds.push_back(result.recommendation.recommended->spindle_speed_rad_per_s);
-    out.limit_at_speed_m.resize(feed_directions);
-  }
-  out.direction_rad.resize(feed_directions);
-  out.lowest_limit_m.setConstant(feed_directions, std::numeric_limits<double>::quiet_NaN());
-  stability::LobesProblem problem = result.cut.problem;
-  // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
-  constexpr Eigen::Index half = feed_directions / 2;
-  for (Eigen::Index i = 0; i < half; ++i) {
-    problem.feed_direction_rad = std::numbers::pi * static_cast<double>(i) / half;
-    out.direction_rad(i) = problem.feed_direction_rad;
-    out.direction_rad(i + half) = problem.feed_direction_rad + std::numbers::pi;
-    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
-    for (std::size_t k = 0; k < limits.size(); ++k) {
-      const double depth = limits[k].status == stability::Limit::Status::found
-                               ? limits[k].axial_depth_m
-                               : std::numeric_limits<double>::quiet_NaN();
-      if (k < speeds_a_direction) {
-        out.lowest_limit_m(i) = std::fmin(out.lowest_limit_m(i), depth);
-      } else {
-        out.limit_at_speed_m(i) = depth;
-      }
-    }
-  }
-  out.lowest_limit_m.tail(half) = out.lowest_limit_m.head(half);
-  if (recommended) out.limit_at_speed_m.tail(half) = out.limit_at_speed_m.head(half);
-  result.feed_directions = out;
 }
 
 void compare(PlanResult& result, Progress& progress) {
@@ -245,8 +163,11 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
     spread(result, seed, progress);
   });
   report_vibration(result);
-  pairs(result, progress);
-  turn_feed(result, progress);
+  result.pairs = decision::limits_of_pairs(result.cut.problem, result.cut.options, progress);
+  const std::optional<decision::Operation>& recommended = result.recommendation.recommended;
+  result.feed_directions = decision::limits_over_feed(
+      result.cut.problem, result.cut.options,
+      recommended ? std::optional(recommended->spindle_speed_rad_per_s) : std::nullopt, progress);
   compare(result, progress);
 }
 

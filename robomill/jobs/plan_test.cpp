@@ -118,10 +118,11 @@ TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
   for (const std::string& kept : {std::string(), std::string("[dynamics]\nkeep_modes = [1, 7]\n")}) {
     write("lobes.toml", lobes + kept + part);
     const PlanResult result = run_job(job(), 1);
-    const LimitShare share = limit_share(result);
+    const decision::LimitShare share =
+        decision::limit_share(result.lobes.limit, result.model, result.cut.problem.workpiece_dynamics);
     ASSERT_EQ(share.tool.size(), 8);
     ASSERT_EQ(share.workpiece.size(), 3);
-    LimitShare counted = {Eigen::VectorXd::Zero(8), Eigen::VectorXd::Zero(3)};
+    decision::LimitShare counted = {Eigen::VectorXd::Zero(8), Eigen::VectorXd::Zero(3)};
     double found = 0.0;
     for (const stability::Limit& limit : result.lobes.limit) {
       if (limit.status != stability::Limit::Status::found) continue;
@@ -151,32 +152,10 @@ TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
   }
 }
 
-// A mode's share is that of the speeds whose limit it sets: two modes far apart in stiffness, each in its own
-// direction.
-TEST(LimitShare, CountsTheSpeedsOfEachMode) {
-  PlanResult result;
-  result.model.modes.resize(3);
-  result.cut.problem.workpiece_dynamics.modes.resize(2);
-  EXPECT_EQ(limit_share(result).tool.size(), 0);  // no limit, no share
-  const auto add = [&result](modal::ModeId mode, int speeds) {
-    for (int i = 0; i < speeds; ++i) {
-      result.lobes.limit.push_back({.status = stability::Limit::Status::found, .mode = mode});
-    }
-  };
-  add({2}, 3);
-  add({3}, 1);
-  add({2, modal::ModeOwner::workpiece}, 4);
-  result.lobes.limit.push_back({});  // stable in range
-  add({}, 5);                        // of measured FRFs: no mode is known
-  const LimitShare share = limit_share(result);
-  EXPECT_EQ(share.tool, Eigen::Vector3d(0.0, 0.375, 0.125));
-  EXPECT_EQ(share.workpiece, Eigen::Vector2d(0.0, 0.5));
-}
-
 // The plan computes half a turn and mirrors it; the other half computed gives the same.
 TEST_F(Plan, LimitOverFeedDirectionIsThatOfTheTurnedProblem) {
   const PlanResult result = run_job(job(), 1);
-  const FeedDirections& turned = *result.feed_directions;
+  const decision::FeedDirections& turned = *result.feed_directions;
   const double speed = result.recommendation.recommended->spindle_speed_rad_per_s;
   ASSERT_EQ(turned.direction_rad.size(), 36);
   for (const Eigen::Index i : {5, 20, 30}) {

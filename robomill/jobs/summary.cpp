@@ -154,7 +154,7 @@ void add_run(std::string& out, const path::ProgramRun& run) {
 void add_operation(std::string& out, const char* label, const decision::Operation& op) {
   append(out, "{:<12} {:>7.0f} rpm  {:.3f} mm  {:.3g} mm/tooth  {:.4g} mm³/s  limited by {}\n", label,
          op.spindle_speed_rad_per_s / units::rpm, op.axial_depth_m / units::mm, op.feed_per_tooth_m / units::mm,
-         op.removal_rate_m3_per_s / units::mm3, limited_by_text(op));
+         op.removal_rate_m3_per_s / units::mm3, decision::limited_by_text(op));
 }
 
 /// What else to know of the recommended one.

@@ -43,7 +43,7 @@ Json cuts_json(const PlanResult& result) {
   return rows;
 }
 
-Json feed_directions_json(const FeedDirections& directions) {
+Json feed_directions_json(const decision::FeedDirections& directions) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < directions.direction_rad.size(); ++i) {
     Json row = {{"feed_direction_deg", number(directions.direction_rad(i) / units::deg)},
@@ -81,7 +81,9 @@ Json depths_json(const Eigen::VectorXd& depths_m) {
 
 Json other_limits_json(const PlanResult& result) {
   Json list = Json::array();
-  for (const DepthCurve& curve : other_limits(result)) {
+  if (!result.recommends()) return list;
+  for (const decision::DepthCurve& curve :
+       decision::other_limits(result.cut.problem.milling, result.job.recommend, result.cut.options)) {
     list.push_back({{"label", curve.label},
                     {"spindle_speed_rpm", io::numbers(curve.spindle_speed_rad_per_s / units::rpm)},
                     {"axial_depth_mm", io::numbers(curve.axial_depth_m / units::mm)}});
@@ -91,7 +93,7 @@ Json other_limits_json(const PlanResult& result) {
 
 Json pairs_json(const PlanResult& result) {
   Json list = Json::array();
-  for (const PartLimits& part : result.pairs) {
+  for (const decision::PartLimits& part : result.pairs) {
     list.push_back({{"label", part.label},
                     {"modes", part.modes},
                     {"spindle_speed_rpm", io::numbers(part.spindle_speed_rad_per_s / units::rpm)},
@@ -122,7 +124,7 @@ Json operation_json(const decision::Operation& op) {
       {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
       {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
       {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
-      {"limited_by", limited_by_text(op)},
+      {"limited_by", decision::limited_by_text(op)},
       {"window_limit_mm", number(op.limit_depth_m / units::mm)},
       {"window_chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
       {"torque_n_m", number(op.torque_n_m)},
@@ -149,7 +151,8 @@ Json decision_json(const PlanResult& result) {
                        {"max_deflection_um", limit(result.job.finish.max_deflection_m)}};
   json["other_limits"] = other_limits_json(result);
   json["pairs"] = pairs_json(result);
-  const LimitShare share = limit_share(result);
+  const decision::LimitShare share =
+      decision::limit_share(result.lobes.limit, result.model, result.cut.problem.workpiece_dynamics);
   json["limit_share"] = {{"tool", io::numbers(share.tool)}, {"workpiece", io::numbers(share.workpiece)}};
   json["cuts"] = cuts_json(result);
   if (result.feed_directions) {
