@@ -365,7 +365,7 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
   const std::filesystem::path tight = plan("program = \"part.ngc\"\ncell = \"tight.toml\"\n");
   folder_.file("tight.toml", hybrid("method = \"no-joint-jerk\"\n", 4.0));
   const PlanResult broken = run_job(tight, 1, Progress::none(), out);
-  ASSERT_FALSE(broken.path->holds());
+  ASSERT_FALSE(broken.shown().path->holds());
   EXPECT_NE(broken.warnings.front().find("the one of an earlier run was removed"), std::string::npos);
   write_plan(out, broken);
   EXPECT_FALSE(std::filesystem::exists(out / "trajectory.csv"));

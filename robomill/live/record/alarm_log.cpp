@@ -17,20 +17,6 @@ bool fits(const RecordedAlarm& alarm, double frequency_hz) {
          frequency_hz < alarm.high_frequency_hz * (1.0 + same_ratio);
 }
 
-void note(RecordedAlarm& alarm, const monitor::Decision& decision, const std::vector<std::string>& channels) {
-  if (decision.synchronous != monitor::SynchronousChatter::none) alarm.synchronous = decision.synchronous;
-  const double frequency_hz = decision.chatter_frequency_hz;
-  if (!(frequency_hz > 0.0)) return;
-  alarm.low_frequency_hz = std::fmin(alarm.low_frequency_hz, frequency_hz);
-  alarm.high_frequency_hz = std::fmax(alarm.high_frequency_hz, frequency_hz);
-  const double std_hz = decision.chatter_frequency_std_hz > 0.0 ? decision.chatter_frequency_std_hz : HUGE_VAL;
-  if (std_hz >= alarm.chatter_frequency_std_hz) return;
-  alarm.chatter_frequency_hz = frequency_hz;
-  alarm.chatter_frequency_std_hz = std_hz;
-  const auto channel = static_cast<std::size_t>(std::max(decision.channel, 0));
-  if (channel < channels.size()) alarm.channel = channels[channel];
-}
-
 }  // namespace
 
 std::optional<std::size_t> AlarmLog::row_for(double time_s, double frequency_hz) {
@@ -38,7 +24,7 @@ std::optional<std::size_t> AlarmLog::row_for(double time_s, double frequency_hz)
     if (time_s - rows_[i].alarm.to_s <= pause_s && fits(rows_[i].alarm, frequency_hz)) return i;
   }
   if (rows_.size() == most_rows) return std::nullopt;
-  rows_.push_back({.alarm = {.from_s = time_s, .to_s = time_s}});
+  rows_.emplace_back().alarm = {.from_s = time_s, .to_s = time_s};
   return rows_.size() - 1;
 }
 
@@ -73,22 +59,12 @@ void AlarmLog::add(const monitor::Decision& decision, const std::vector<std::str
   Row& row = rows_[*row_];
   if (row.last != count_) ++row.alarm.count;
   row.last = count_;
-  note(row.alarm, decision, channels);
+  row.note(decision, channels);
 }
 
 void AlarmLog::add(const monitor::MonitorEvent& event) {
-  const bool advised =
-      event.mode.known() || event.suggested_spindle_speed_rad_per_s > 0.0 || event.no_speed != monitor::NoSpeed::none;
-  if (!row_ || !advised || event.kind != monitor::MonitorEvent::Kind::state) return;
-  Row& row = rows_[*row_];
-  if (!fits(row.alarm, event.decision.chatter_frequency_hz)) return;
-  if (event.decision.chatter_frequency_std_hz >= row.advised_std_hz) return;
-  row.advised_std_hz = event.decision.chatter_frequency_std_hz;
-  row.alarm.mode = event.mode;
-  row.alarm.line_hz = event.line_hz;
-  row.alarm.no_speed = event.no_speed;
-  const double speed = event.suggested_spindle_speed_rad_per_s;
-  row.alarm.suggested_spindle_speed_rad_per_s = speed > 0.0 ? speed : NAN;
+  if (!row_ || event.kind != monitor::MonitorEvent::Kind::state) return;
+  if (fits(rows_[*row_].alarm, event.decision.chatter_frequency_hz)) rows_[*row_].advise(event);
 }
 
 std::vector<RecordedAlarm> AlarmLog::alarms() const {

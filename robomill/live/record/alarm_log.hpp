@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/live/record/lasting_alarm.hpp"
 #include "robomill/live/recorded_run.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 
@@ -28,10 +29,8 @@ class AlarmLog {
   [[nodiscard]] double highest_hz() const;
 
  private:
-  struct Row {
-    RecordedAlarm alarm = {};
-    std::size_t last = 0;         ///< number of the last alarm counted
-    double advised_std_hz = NAN;  ///< of the frequency that the advice is for
+  struct Row : LastingAlarm {
+    std::size_t last = 0;  ///< number of the last alarm counted
   };
   /// The row that this decision belongs to; none where there are too many.
   [[nodiscard]] std::optional<std::size_t> row_for(double time_s, double frequency_hz);

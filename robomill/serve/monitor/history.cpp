@@ -22,32 +22,34 @@ Json text_or_null(std::string_view text) {
 }  // namespace
 
 Json MonitorHistory::Row::json() const {
+  const live::RecordedAlarm& alarm = lasting.alarm;
+  const bool hidden = alarm.synchronous != monitor::SynchronousChatter::none;
   Json out = {{"number", number},
               {"kind", row_kinds[static_cast<std::size_t>(kind)]},
               {"clock_s", io::number(clock_s)},
-              {"from_s", io::number(from_s)},
-              {"to_s", io::number(to_s)},
+              {"from_s", io::number(alarm.from_s)},
+              {"to_s", io::number(alarm.to_s)},
               {"reason", kind == Kind::blind ? Json(monitor::to_string(reason)) : Json(nullptr)},
               {"score", io::number(score)},
-              {"low_frequency_hz", io::number(low_hz)},
-              {"high_frequency_hz", io::number(high_hz)},
-              {"chatter_frequency_hz", io::number(frequency_hz)},
-              {"chatter_frequency_std_hz", io::number(std_hz)},
-              {"channel", text_or_null(channel)},
-              {"hidden", synchronous == monitor::SynchronousChatter::none ? Json(nullptr)
-                                                                          : Json(monitor::to_string(synchronous))},
-              {"suggested_spindle_speed_rpm", io::positive(suggested_rad_per_s, units::rpm)},
-              {"line_frequencies_hz", line_hz},
-              {"no_speed", text_or_null(name_in(monitor::no_speed_names, no_speed))},
+              {"low_frequency_hz", io::number(alarm.low_frequency_hz)},
+              {"high_frequency_hz", io::number(alarm.high_frequency_hz)},
+              {"chatter_frequency_hz", io::number(alarm.chatter_frequency_hz)},
+              {"chatter_frequency_std_hz", io::number(alarm.chatter_frequency_std_hz)},
+              {"channel", text_or_null(alarm.channel)},
+              {"hidden", hidden ? Json(monitor::to_string(alarm.synchronous)) : Json(nullptr)},
+              {"suggested_spindle_speed_rpm", io::positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)},
+              {"line_frequencies_hz", alarm.line_hz},
+              {"no_speed", text_or_null(name_in(monitor::no_speed_names, alarm.no_speed))},
               {"what", text_or_null(what)},
-              {"count", count},
+              {"count", alarm.count},
               {"message", text_or_null(message)}};
-  modal::set_mode(out, mode);
+  modal::set_mode(out, alarm.mode);
   return out;
 }
 
-MonitorHistory::Row& MonitorHistory::begin(Row row) {
+MonitorHistory::Row& MonitorHistory::begin(Row row, double from_s) {
   row.number = ++last_;
+  row.lasting.alarm.from_s = from_s;
   rows_.push_back(std::move(row));
   if (rows_.size() > most_rows) rows_.pop_front();
   return rows_.back();
@@ -60,7 +62,7 @@ MonitorHistory::Row* MonitorHistory::open_row() {
 
 void MonitorHistory::end(double time_s) {
   if (Row* const row = open_row()) {
-    row->to_s = time_s;
+    row->lasting.alarm.to_s = time_s;
     row->changed = true;
   }
   open_ = 0;
@@ -73,7 +75,7 @@ MonitorHistory::Row* MonitorHistory::lasting(monitor::State state, monitor::Blin
   if (Row* const row = open_row(); row && row->kind == kind && row->reason == reason) return row;
   end(time_s);
   if (!chatters && state != monitor::State::blind) return nullptr;
-  Row& row = begin({.kind = kind, .clock_s = clock_s, .from_s = time_s, .reason = reason});
+  Row& row = begin({.kind = kind, .clock_s = clock_s, .reason = reason}, time_s);
   open_ = row.number;
   return &row;
 }
@@ -81,17 +83,7 @@ MonitorHistory::Row* MonitorHistory::lasting(monitor::State state, monitor::Blin
 void MonitorHistory::note(Row& row, const monitor::Decision& decision) const {
   const bool worse = alarm_below_ ? decision.score < row.score : decision.score > row.score;
   if (worse || std::isnan(row.score)) row.score = decision.score;
-  if (decision.synchronous != monitor::SynchronousChatter::none) row.synchronous = decision.synchronous;
-  const double frequency_hz = decision.chatter_frequency_hz;
-  if (!(frequency_hz > 0.0)) return;
-  row.low_hz = std::fmin(row.low_hz, frequency_hz);
-  row.high_hz = std::fmax(row.high_hz, frequency_hz);
-  const double std_hz = decision.chatter_frequency_std_hz > 0.0 ? decision.chatter_frequency_std_hz : HUGE_VAL;
-  if (std_hz >= row.std_hz) return;
-  row.frequency_hz = frequency_hz;
-  row.std_hz = std_hz;
-  const auto channel = static_cast<std::size_t>(std::max(decision.channel, 0));
-  if (channel < channels_.size()) row.channel = channels_[channel];
+  row.lasting.note(decision, channels_);
 }
 
 void MonitorHistory::add(const monitor::Decision& decision, double time_s, double clock_s) {
@@ -108,10 +100,10 @@ void MonitorHistory::add(const monitor::MonitorEvent& event, const std::string& 
   const monitor::Decision& decision = event.decision;
   if (event.kind == Kind::stream) {
     const bool again = !rows_.empty() && rows_.back().what == event.what;
-    Row& row = again ? rows_.back() : begin({.clock_s = clock_s, .from_s = event.time_s, .what = event.what});
-    row.to_s = event.time_s;
+    Row& row = again ? rows_.back() : begin({.clock_s = clock_s, .what = event.what}, event.time_s);
+    row.lasting.alarm.to_s = event.time_s;
     row.message = message.substr(0, longest_message);
-    row.count += event.count;
+    row.lasting.alarm.count += event.count;
     row.changed = true;
     return;
   }
@@ -121,16 +113,7 @@ void MonitorHistory::add(const monitor::MonitorEvent& event, const std::string& 
     return;
   }
   Row* const row = open_row();
-  const bool advised =
-      event.mode.known() || event.suggested_spindle_speed_rad_per_s > 0.0 || event.no_speed != monitor::NoSpeed::none;
-  if (!row || row->kind != Row::Kind::chatter || !advised) return;
-  if (decision.chatter_frequency_std_hz >= row->advised_std_hz) return;
-  row->advised_std_hz = decision.chatter_frequency_std_hz;
-  row->mode = event.mode;
-  row->line_hz = event.line_hz;
-  row->suggested_rad_per_s = event.suggested_spindle_speed_rad_per_s;
-  row->no_speed = event.no_speed;
-  row->changed = true;
+  if (row && row->kind == Row::Kind::chatter && row->lasting.advise(event)) row->changed = true;
 }
 
 Json MonitorHistory::rows() const {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "robomill/io/json.hpp"
-#include "robomill/modal/mode_id.hpp"
+#include "robomill/live/record/lasting_alarm.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
 
@@ -43,23 +43,15 @@ class MonitorHistory {
     enum class Kind { chatter, blind, notice };
     Kind kind = Kind::notice;
     std::uint64_t number = 0;  ///< from 1
-    double clock_s = 0.0, from_s = 0.0, to_s = NAN;
+    double clock_s = 0.0;
     monitor::BlindReason reason = monitor::BlindReason::none;
-    double score = NAN;  ///< the worst
-    double low_hz = NAN, high_hz = NAN, frequency_hz = NAN, std_hz = NAN;
-    std::string channel = {};
-    monitor::SynchronousChatter synchronous = monitor::SynchronousChatter::none;
-    double advised_std_hz = NAN;  ///< of the frequency that the advice is for
-    modal::ModeId mode = {};
-    std::vector<double> line_hz = {};
-    double suggested_rad_per_s = 0.0;
-    monitor::NoSpeed no_speed = monitor::NoSpeed::none;
+    double score = NAN;                   ///< the worst
+    live::LastingAlarm lasting = {};      ///< begin and end; of chatter what is known of it; of notices their count
     std::string what = {}, message = {};  ///< of notices
-    std::uint64_t count = 0;
     bool changed = true;
     [[nodiscard]] io::Json json() const;
   };
-  Row& begin(Row row);
+  Row& begin(Row row, double from_s);
   /// The row of what lasts; none where nothing does.
   [[nodiscard]] Row* lasting(monitor::State state, monitor::BlindReason reason, double time_s, double clock_s);
   [[nodiscard]] Row* open_row();
