@@ -18,6 +18,7 @@
 #include "robomill/process/blocks/named_block.hpp"
 #include "robomill/process/blocks/scans.hpp"
 #include "robomill/process/blocks/stability.hpp"
+#include "robomill/process/program_forces.hpp"
 
 namespace robomill::process {
 
@@ -213,9 +214,7 @@ void BlocksOptions::validate() const {
 ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamics, const BlocksOptions& options,
                            Progress& progress) {
   options.validate();
-  if (!forces.cell || !forces.program || forces.program->cuts.size() != forces.program->blocks.size()) {
-    throw InvalidInput("forces", "must be those along a program, with a cell and the cut of each block");
-  }
+  require_cuts(forces);
   const auto begun = std::chrono::steady_clock::now();
   ProgramBlocks out;
   out.rows.resize(forces.program->blocks.size());

@@ -19,6 +19,7 @@
 #include "robomill/process/decide/exact_run.hpp"
 #include "robomill/process/decide/gamma_map.hpp"
 #include "robomill/process/decide/outcome.hpp"
+#include "robomill/process/program_forces.hpp"
 
 namespace robomill::process {
 namespace {
@@ -93,10 +94,7 @@ void keep_stretches(const BlockModel& model, const ProgramDecision& choice, Deci
 
 void check_problem(const DecideProblem& problem) {
   problem.options.validate();
-  const ForcesResult& forces = problem.forces;
-  if (!forces.cell || !forces.program || forces.program->cuts.size() != forces.program->blocks.size()) {
-    throw InvalidInput("forces", "must be those along a program, with a cell and the cut of each block");
-  }
+  require_cuts(problem.forces);
   if (problem.blocks.cutting == 0) throw InvalidInput("program", "has no block that cuts");
 }
 

@@ -365,6 +365,11 @@ std::string stock_text(const ProgramForces& program) {
   return fmt::format("a box {}, {}", box, top);
 }
 
+void require_cuts(const ForcesResult& forces) {
+  if (forces.cell && forces.program && forces.program->cuts.size() == forces.program->blocks.size()) return;
+  throw InvalidInput("forces", "must be those along a program, with a cell and the cut of each block");
+}
+
 void run_program(ForcesResult& result, program::Program program, const std::filesystem::path& path,
                  const ProgramRun& run, Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();

@@ -10,6 +10,9 @@ namespace robomill::process {
 /// number. Not regular: the deflections from there on are left as they are.
 [[nodiscard]] robot::Stiffness::Status bend_block(const robot::Cell& cell, BlockResult& row);
 
+/// @throws InvalidInput unless they are along a program, with a cell and the cut of each block
+void require_cuts(const ForcesResult& forces);
+
 /// Runs a program through the material.
 /// @param result  with cut, and cell if there is one; its program, warnings and notes are filled
 /// @throws InvalidInput as forces_along; Interrupted
