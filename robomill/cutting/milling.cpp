@@ -217,6 +217,17 @@ void ForceCoefficients::validate() const {
   require_non_negative("radial_edge_n_per_m", radial_edge_n_per_m, "N/m");
 }
 
+void Drill::validate() const {
+  if (lips < 1 || lips > 20) throw InvalidInput("lips", lips, "", "must lie between 1 and 20", "Drills have two");
+  require_positive("diameter_m", diameter_m, "m");
+  if (diameter_m > 1.0) throw InvalidInput("diameter_m", diameter_m, "m", "is too large for a drill");
+  if (!(point_angle_rad > 0.1 && point_angle_rad <= std::numbers::pi * (1.0 + 1e-12))) {
+    throw InvalidInput("point_angle_rad", point_angle_rad, "rad", "must lie between 6 and 180 degrees",
+                       "118 degrees is usual");
+  }
+  coefficients.validate();
+}
+
 void ProcessDamping::validate() const {
   constexpr const char* hint = "Steel is near 40,000 N/mm^3 = 4e13 N/m^3";
   require_non_negative("indentation_n_per_m3", indentation_n_per_m3, "N/m^3", hint);

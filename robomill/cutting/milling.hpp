@@ -69,6 +69,19 @@ struct ROBOMILL_API ForceCoefficients {
   void validate() const;
 };
 
+/// A drill, or what bores out with one: n lips on a cone that cut all round, over the width b / sin p of each, p half
+/// the point angle, from the pilot hole (or the core) to the rim; b is measured along the radius. A chip is cut along
+/// (cos p sin φ, cos p cos φ, -sin p): Kt acts against the cut's motion, Kr against that (the thrust). Chisel edge,
+/// margins and twisting are left out.
+struct ROBOMILL_API Drill {
+  int lips = 2;                                 ///< n, in [1, 20], evenly spaced
+  double diameter_m = 0.0;                      ///< D [m], > 0; required
+  double point_angle_rad = 2.0594885173533087;  ///< 2p [rad], in (0.1, π]; 118 degrees
+  ForceCoefficients coefficients = {};          ///< edge forces per length of lip
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
 /// The worn land under an edge is pressed into the wave that it rides over: the tooth is pushed back by the specific
 /// indentation force on the displaced volume, in its equivalent viscous form for small vibration. Per axial depth, with
 /// r the outward displacement of the tooth and V = Ω D / 2: radial K l² r' / (2 V), tangential μ times that, both

@@ -36,12 +36,9 @@ simulation::MillingCut milling_of(const LobesFile& file, const stability::Operat
 
 simulation::DrillingCut drilling_of(const LobesFile& file, const stability::OperatingPoint& point) {
   simulation::DrillingCut cut;
-  cut.lips = file.problem.milling.tool.teeth;
-  cut.diameter_m = file.problem.milling.tool.diameter_m;
-  if (file.point_angle_rad != 0.0) cut.point_angle_rad = file.point_angle_rad;
+  static_cast<cutting::Drill&>(cut) = *file.problem.drilling;
   cut.radial_width_m = point.axial_depth_m;
   cut.feed_per_revolution_m = file.feed_per_revolution_m;
-  cut.coefficients = file.problem.milling.coefficients;
   cut.structure = stability::tip_modes(file.problem);
   cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   return cut;

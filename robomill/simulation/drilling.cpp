@@ -1,7 +1,6 @@
 #include "robomill/simulation/drilling.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -52,13 +51,7 @@ CutModel detail::drilling_model(const DrillingCut& cut, int steps_per_revolution
 }
 
 void DrillingCut::validate() const {
-  if (lips < 1 || lips > 20) throw InvalidInput("lips", lips, "", "must lie between 1 and 20", "Drills have two");
-  require_positive("diameter_m", diameter_m, "m");
-  if (diameter_m > 1.0) throw InvalidInput("diameter_m", diameter_m, "m", "is too large for a drill");
-  if (!(point_angle_rad > 0.1 && point_angle_rad <= std::numbers::pi * (1.0 + 1e-12))) {
-    throw InvalidInput("point_angle_rad", point_angle_rad, "rad", "must lie between 6 and 180 degrees",
-                       "118 degrees is usual");
-  }
+  Drill::validate();
   require_positive("radial_width_m", radial_width_m, "m");
   if (radial_width_m > 0.5 * diameter_m * (1.0 + 1e-12)) {
     throw InvalidInput("radial_width_m", radial_width_m, "m", "must be at most half the drill's diameter");
@@ -66,7 +59,6 @@ void DrillingCut::validate() const {
   require_positive("feed_per_revolution_m", feed_per_revolution_m, "m");
   require_non_negative("runout_m", runout_m, "m");
   if (runout_m > 0.5 * diameter_m) throw InvalidInput("runout_m", runout_m, "m", "must be at most the drill's radius");
-  coefficients.validate();
   cutting::require_spindle_speed("spindle_speed_rad_per_s", spindle_speed_rad_per_s);
   schedule.validate();
   require_damped(structure);

@@ -106,7 +106,7 @@ std::optional<Drawn> draw(std::uint64_t seed) {
   drawn.speed_rpm = random.uniform(2500.0, 15000.0);
   drawn.depth_m = std::pow(10.0, random.uniform(-4.0, -2.5));
   if (random.index(12) == 0) {
-    stability::Drilling drill;
+    cutting::Drill drill;
     drill.lips = 1 + static_cast<int>(random.index(3));
     drill.diameter_m = diameter;
     drill.point_angle_rad = random.uniform(1.6, 2.6);
@@ -129,12 +129,8 @@ SmallVibration simulated(const Drawn& drawn) {
   const double speed = drawn.speed_rpm * testing::rpm;
   const modal::TipModes structure = stability::tip_modes(drawn.problem);
   if (drawn.problem.drilling) {
-    const stability::Drilling& drill = *drawn.problem.drilling;
     DrillingCut cut;
-    cut.lips = drill.lips;
-    cut.diameter_m = drill.diameter_m;
-    cut.point_angle_rad = drill.point_angle_rad;
-    cut.coefficients = drill.coefficients;
+    static_cast<cutting::Drill&>(cut) = *drawn.problem.drilling;
     cut.radial_width_m = drawn.depth_m;
     cut.feed_per_revolution_m = 1e-4;
     cut.structure = structure;

@@ -25,7 +25,7 @@ struct ROBOMILL_API LobesProblem {
   cutting::Milling milling;  ///< a cylindrical cutter, upright, in x and y
   /// In place of milling, at most one of them; in x, y and z. By collocation alone.
   std::optional<SpatialMilling> spatial = {};
-  std::optional<Drilling> drilling = {};
+  std::optional<cutting::Drill> drilling = {};
   [[nodiscard]] bool in_three_directions() const { return spatial.has_value() || drilling.has_value(); }
   /// @param what  that cannot be done otherwise, as "the surface"
   /// @throws InvalidInput unless the cut is `milling`

@@ -32,19 +32,6 @@ struct ROBOMILL_API SpatialMilling {
 /// which a cut with a given engagement is what was found. 0 where nothing cuts.
 [[nodiscard]] ROBOMILL_API double engaged_height_m(const cutting::Engagement& engagement);
 
-/// Drilling, or boring out with a drill: lips on a cone that cut all round. A chip is cut along
-/// n = (cos p sin φ, cos p cos φ, -sin p), p half the point angle, over the width b / sin p, b the depth of the chart:
-/// from the pilot hole (or the core) to the rim. Kt acts against the cut's motion, Kr against n. Chisel edge, margins
-/// and twisting are left out. The same cut in the time domain: robomill/simulation/drilling.hpp.
-struct ROBOMILL_API Drilling {
-  int lips = 2;                                 ///< evenly spaced
-  double diameter_m = 0.0;                      ///< D [m], > 0; required
-  double point_angle_rad = 2.0594885173533087;  ///< 2p [rad], in (0, π]; 118 degrees
-  cutting::ForceCoefficients coefficients;
-  /// @throws InvalidInput naming the member
-  void validate() const;
-};
-
 /// What a stability chart varies beside the spindle speed.
 enum class SweptParameter {
   axial_depth,   ///< [m]

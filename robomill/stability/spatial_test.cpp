@@ -129,7 +129,7 @@ TEST(Spatial, ASweepFindsWhereItsPointsAreStable) {
 // turned shaft's edge [Tlusty1963].
 TEST(Spatial, ADrillAlongItsAxisHasTheTurnedShaftsLimit) {
   const double mass = 0.5, zeta = 0.03, frequency = 700.0;
-  Drilling drill;
+  cutting::Drill drill;
   drill.diameter_m = 0.012;
   drill.coefficients = {.tangential_n_per_m2 = 8e8, .radial_n_per_m2 = 5e8};
   LobesProblem problem;

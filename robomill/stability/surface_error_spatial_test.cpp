@@ -435,7 +435,7 @@ TEST(SurfaceErrorSpatial, SaysWhatItCannotSee) {
   EXPECT_EQ(test::field_of([&] { static_cast<void>(surface_point(problem, {900.0, 1e-4})); }), "feed_per_tooth_m");
   LobesProblem drill = problem;
   drill.spatial.reset();
-  drill.drilling = Drilling{.diameter_m = 0.01, .coefficients = {.tangential_n_per_m2 = 8e8}};
+  drill.drilling = cutting::Drill{.diameter_m = 0.01, .coefficients = {.tangential_n_per_m2 = 8e8}};
   EXPECT_EQ(test::field_of([&] { static_cast<void>(surface_point(drill, {900.0, 1e-4})); }), "drilling");
   EXPECT_EQ(test::field_of([&] {
               static_cast<void>(surface_profile(testing::benchmark(0.1), {900.0, 1e-4}));

@@ -42,8 +42,8 @@ void read_drilling(io::TomlFile& file, LobesFile& out) {
 }
 
 /// The same for its lobes, once its coefficients are known.
-stability::Drilling drill_of(io::TomlFile& file, const LobesFile& out) {
-  stability::Drilling drill;
+cutting::Drill drill_of(io::TomlFile& file, const LobesFile& out) {
+  cutting::Drill drill;
   drill.lips = out.problem.milling.tool.teeth;
   drill.diameter_m = out.problem.milling.tool.diameter_m;
   if (out.point_angle_rad != 0.0) drill.point_angle_rad = out.point_angle_rad;

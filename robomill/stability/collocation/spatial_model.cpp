@@ -64,7 +64,7 @@ SpatialModel::Engage engagement_of(const SpatialMilling& milling, SweptParameter
 }
 
 /// A drill's lip is one ring that cuts all round.
-SpatialModel::Parts drill_parts(const Drilling& drill) {
+SpatialModel::Parts drill_parts(const cutting::Drill& drill) {
   const double half_angle = 0.5 * drill.point_angle_rad;
   SpatialModel::Parts parts;
   parts.cutter.kind = cutting::CutterKind::general;
