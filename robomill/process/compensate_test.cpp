@@ -17,7 +17,7 @@
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/stability/surface_error.hpp"
 #include "testing/cutting/deflected_wall.hpp"
-#include "testing/jobs/program_files.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/stability/spatial_cases.hpp"
 #include "testing/support.hpp"
 
@@ -95,12 +95,11 @@ class Compensate : public ::testing::Test {
                                        .min_mm = {0.0, low, 0.0},
                                        .max_mm = {job.length, high, job.depth},
                                        .dexel_mm = 0.25};
-    return forces_along(test_support::forces_file(cut), wall_program(job));
+    return forces_along(cut, wall_program(job));
   }
-  ForcesResult forces_along(const std::string& forces, const std::string& program) {
-    return test_support::forces_along(
-        folder_, {.cell = test_support::arm_cell(ROBOMILL_SOURCE_DIR), .forces = forces, .program = program},
-        {.keep_cuts = true});
+  static ForcesResult forces_along(const test_support::CutFile& cut, const std::string& program) {
+    return testing::forces_along(testing::cut_of(cut), testing::cell_of(test_support::arm_cell(ROBOMILL_SOURCE_DIR)),
+                                 program, {.keep_cuts = true});
   }
   static std::string pass(const WallJob& job, double y) {
     const double feed = job.feed_per_tooth * job.teeth * WallJob::speed_rpm;
@@ -148,7 +147,6 @@ class Compensate : public ::testing::Test {
   static bool says(const std::vector<std::string>& texts, const std::string& what) {
     return std::ranges::any_of(texts, [&](const std::string& text) { return text.find(what) != std::string::npos; });
   }
-  test::Folder folder_;
 };
 
 /// By how much the judged error falls.
@@ -195,9 +193,8 @@ TEST_F(Compensate, ABallEndIsMovedByWhatRemainsBetweenItsPasses) {
     for (int i = 1; i <= 16; ++i) text += fmt::format("G1 X{} F1800\n", -6 + 2 * i);
     text += "G0 Z10\n";
   }
-  const ForcesResult forces = forces_along(
-      test_support::forces_file({.diameter_mm = 8.0, .min_mm = {0.0, -8.0, -4.0}, .max_mm = {20.0, 8.0, 0.0}}),
-      text + "M2\n");
+  const ForcesResult forces =
+      forces_along({.diameter_mm = 8.0, .min_mm = {0.0, -8.0, -4.0}, .max_mm = {20.0, 8.0, 0.0}}, text + "M2\n");
   const DynamicsAt dynamics = dynamics_of(arm_swings());
   const Compensation result = compensate(forces, dynamics);
   EXPECT_EQ(result.status, Compensation::Status::settled);

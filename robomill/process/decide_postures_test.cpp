@@ -14,43 +14,38 @@
 #include "robomill/cell/arm_modes.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cutting/workpiece.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/process/blocks/joint_torques.hpp"
 #include "robomill/process/decide.hpp"
 #include "robomill/process/decide/motion_loads.hpp"
 #include "robomill/robot/pose.hpp"
-#include "testing/jobs/three_passes.hpp"
+#include "testing/process/programs.hpp"
 
 namespace robomill::process {
 namespace decide_postures_test {
 
-class DecidePostures : public jobs::testing::ThreePasses {
+class DecidePostures : public testing::ThreePasses {
  protected:
   /// The cell with a tool of 30 mm below its holder, and what else stands there.
   void add_geometry(const std::string& keys) {
-    folder_.file("cell.toml", io::read_file(folder_.at("cell.toml")) +
-                                  "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\n"
-                                  "holder = [{ length_mm = 20, diameter_mm = 30 }]\n" +
-                                  keys);
+    cell_ +=
+        "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n" + keys;
   }
   /// Masses of the links and torques of the drives.
   void add_links() {
-    std::string cell = io::read_file(folder_.at("cell.toml"));
     std::string links = "joint_max_torque_n_m = [9000, 20000, 9000, 2000, 2000, 1000]\nlinks = [\n";
     for (const double mass_kg : {300.0, 250.0, 150.0, 60.0, 30.0, 20.0}) {
       links +=
           fmt::format("  {{ mass_kg = {0}, center_mm = [{0}, 20, -{0}], inertia_kg_m2 = [{1}, {1}, {1}, 0, 0, 0] }},\n",
                       mass_kg, 0.02 * mass_kg);
     }
-    cell.insert(cell.find("joint_stiffness"), links + "]\n");
-    folder_.file("cell.toml", cell);
+    cell_.insert(cell_.find("joint_stiffness"), links + "]\n");
   }
   static constexpr const char* far_box = "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n";
 };
 
 // A structure that is stiffer where the last joint stands elsewhere: as programmed it chatters at its speed.
 TEST_F(DecidePostures, TurnsGammaWhereThatAloneHelps) {
-  const double programmed = judged().programmed.forces->program->blocks[10].joints(5);
+  const double programmed = forces().program->blocks[10].joints(5);
   const DynamicsAt turning = [programmed](const Eigen::VectorXd& joints) {
     const double away = std::sin(joints(5) - programmed);
     return PostureDynamics{.modes = modes(0.05 + 20.0 * away * away)};
@@ -148,7 +143,7 @@ cutting::Workpiece finished(const ForcesResult& forces, const program::Program& 
 
 TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
   add_geometry(far_box);
-  const ForcesResult forces = *judged().programmed.forces;
+  const ForcesResult forces = this->forces();
   const robot::Cell& cell = forces.cell->cell;
   const DynamicsAt leaning = stiff_where_it_leans(cell, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
@@ -194,7 +189,7 @@ TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
 TEST_F(DecidePostures, LeansThatCollideAreLeftOut) {
   // Beside the end of the passes, 4 mm from the holder of an upright tool.
   add_geometry("fixtures = [{ box_from_mm = [31, -20, 25], box_to_mm = [45, 20, 60] }]\n");
-  const ForcesResult forces = *judged().programmed.forces;
+  const ForcesResult forces = this->forces();
   const DynamicsAt leaning = stiff_where_it_leans(forces.cell->cell, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
   const Judged judged = {.forces = forces, .blocks = blocks};
@@ -223,7 +218,7 @@ TEST_F(DecidePostures, LeansNeedAGeometryAndABall) {
       EXPECT_EQ(result.forces->program->program.blocks[i].end.axis, judged.forces.program->program.blocks[i].end.axis);
     }
   }
-  folder_.file("forces.toml", test_support::forces_file({.kind = "flat-end", .dexel_mm = 0.25}));
+  cut_ = testing::cut_of({.kind = "flat-end", .dexel_mm = 0.25});
   add_geometry(far_box);
   const Judged flat = judge(dynamics);
   DecideProblem asked = problem(flat, dynamics);
@@ -281,26 +276,10 @@ TEST_F(DecidePostures, LoadsOfJointsAreWeightAndCut) {
   }
 }
 
-// What hangs on the flange is part of what the drives hold: a plan that does not know it says so.
-TEST_F(DecidePostures, LoadsWithoutTheSpindleAreAssumed) {
-  const auto assumes_mass = [this] {
-    const std::vector<Assumption> assumed = judged().assumed;
-    const auto found = std::ranges::find(assumed, "tool.mass_kg", &Assumption::key);
-    return found != assumed.end() && found->taken == "none" && found->file == "cell.toml";
-  };
-  EXPECT_FALSE(assumes_mass()) << "no drive has a limit";
-  add_links();
-  EXPECT_TRUE(assumes_mass());
-  std::string cell = io::read_file(folder_.at("cell.toml"));
-  cell.insert(cell.find("length_mm = "), "mass_kg = 40\n");
-  folder_.file("cell.toml", cell);
-  EXPECT_FALSE(assumes_mass());
-}
-
 // Against the equation of motion at speeds and accelerations in closed form.
 TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
   add_links();
-  const ForcesResult forces = *judged().programmed.forces;
+  const ForcesResult forces = this->forces();
   const cell::Cell& file = *forces.cell;
   ASSERT_TRUE(knows_torques(file));
   const Eigen::VectorXd middle = forces.program->blocks[5].joints;

@@ -12,7 +12,7 @@
 #include "robomill/decision/program_decision.hpp"
 #include "robomill/process/decide.hpp"
 #include "robomill/process/decide/block_model.hpp"
-#include "testing/jobs/three_passes.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::process {
@@ -47,7 +47,7 @@ void draw_limits(Random& random, const ForcesResult& forces, DecideProblem& prob
       {.spindle_speed_rad_per_s = 18000.0 * units::rpm, .torque_n_m = 0.5 * torque, .power_w = power}};
 }
 
-class DecideRejected : public jobs::testing::ThreePasses {};
+class DecideRejected : public testing::ThreePasses {};
 
 // "rejected 13070 rpm: chip thickness 0.0306 mm; at most 0.06 mm" would contradict itself.
 TEST_F(DecideRejected, WhatStopsASpeedLiesBeyondWhatIsAllowed) {

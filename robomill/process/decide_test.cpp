@@ -12,25 +12,18 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
-#include "robomill/jobs/plan.hpp"
-#include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/process/blocks/stability.hpp"
 #include "robomill/simulation/posture.hpp"
-#include "testing/jobs/three_passes.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::process {
 namespace decide_test {
 
-using jobs::PlanResult;
-using jobs::run_job;
-using jobs::write_plan;
-
 constexpr double teeth = 2.0;
 
-using Decide = jobs::testing::ThreePasses;
+using Decide = testing::ThreePasses;
 
 TEST_F(Decide, KeepsEveryLimitThatTheProgramBrokeAndIsFaster) {
   const DynamicsAt dynamics = constant_dynamics(modes());
@@ -93,69 +86,6 @@ TEST_F(Decide, IsWithinTwoPercentOfLookingAtEverySpeed) {
   }
   ASSERT_LT(best, 1e300);
   EXPECT_LE(result.decided->cutting_time_s, 1.02 * best);
-}
-
-TEST_F(Decide, TheProgramThatIsWrittenIsTheOneThatWasJudged) {
-  folder_.file("modes.json", modal::modes_json(modes()));
-  const std::string modes_toml = "modes = \"modes.json\"\n";
-  const std::filesystem::path job =
-      folder_.file("job.toml", "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n" +
-                                   modes_toml + "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n");
-  const PlanResult plan = run_job(job, 1);
-  ASSERT_TRUE(plan.decision.has_value());
-  ASSERT_EQ(plan.decision->status, DecideResult::Status::found) << plan.decision->reason;
-  write_plan(folder_.at("out"), plan);
-  const std::string text = io::read_file(folder_.at("out") / "program.ngc");
-  EXPECT_NE(text.find("(three passes)"), std::string::npos);
-  EXPECT_NE(text.find("(pass 3)"), std::string::npos);
-  EXPECT_NE(text.find("Nothing was checked for collisions"), std::string::npos);
-  const PlanResult again = run_job(folder_.file("again.toml",
-                                                "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = "
-                                                "\"out/program.ngc\"\n" +
-                                                    modes_toml + "[decide]\nfree = []\n"),
-                                   1);
-  ASSERT_EQ(again.shown().blocks->rows.size(), plan.shown().blocks->rows.size());
-  for (std::size_t i = 0; i < again.shown().blocks->rows.size(); ++i) {
-    const BlockRow& a = again.shown().blocks->rows[i];
-    const BlockRow& b = plan.shown().blocks->rows[i];
-    EXPECT_EQ(a.cuts, b.cuts);
-    if (!a.cuts) continue;
-    EXPECT_NEAR(a.stability.at.spectral_radius, b.stability.at.spectral_radius, 1e-4);
-    EXPECT_NEAR(a.spindle_speed_rad_per_s, b.spindle_speed_rad_per_s, 1e-4 * b.spindle_speed_rad_per_s);
-    EXPECT_LE(again.shown().forces->program->blocks[i].force.peak_force_n,
-              1.001 * plan.shown().forces->program->blocks[i].force.peak_force_n);
-  }
-}
-
-// The head of the program says what was looked at, and no more.
-TEST_F(Decide, TheHeadOfTheProgramSaysWhatWasChecked) {
-  folder_.file("modes.json", modal::modes_json(modes()));
-  const auto head = [&](const std::string& more) {
-    std::string cell = io::read_file(folder_.at("cell.toml"));
-    cell.insert(cell.find("[workpiece]"),
-                "joint_max_velocity = [2.1, 2.0, 1.9, 3.1, 3.0, 3.8]\njoint_max_acceleration = [3, 3, 3, 8, 8, 10]\n"
-                "joint_max_jerk = [60, 60, 60, 200, 200, 250]\n");
-    folder_.file("checked.toml", cell + more +
-                                     "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\n"
-                                     "holder = [{ length_mm = 20, diameter_mm = 30 }]\n"
-                                     "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n");
-    const PlanResult plan =
-        run_job(folder_.file("job.toml",
-                             "[job]\nforces = \"forces.toml\"\ncell = \"checked.toml\"\nprogram = \"part.ngc\"\n"
-                             "modes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n"),
-                1);
-    if (!plan.decided || !plan.decided->text) return std::string("no program");
-    return plan.decided->text->text.substr(0, 2000);
-  };
-  const std::string ends = head("");
-  EXPECT_NE(ends.find("from block end to block end with every joint running evenly, no trajectory"), std::string::npos)
-      << ends;
-  const std::string way = head(
-      "\n[smoothing]\ntip_tolerance_mm = 0.02\naxis_tolerance_deg = 0.1\nmax_velocity_mm_per_s = 50\n"
-      "max_acceleration_mm_per_s2 = 500\nmax_jerk_mm_per_s3 = 10000\nmax_angular_velocity_deg_per_s = 60\n"
-      "max_angular_acceleration_deg_per_s2 = 600\nmax_angular_jerk_deg_per_s3 = 12000\n");
-  EXPECT_NE(way.find("The whole trajectory was checked against the cell's geometry: clear"), std::string::npos) << way;
-  EXPECT_EQ(way.find("block end"), std::string::npos) << way;
 }
 
 // Independent of every stability chart: the cut in time, tooth by tooth.
@@ -363,30 +293,6 @@ TEST_F(Decide, SpeedsChangeInRapidMovesAlone) {
   ASSERT_EQ(one.status, DecideResult::Status::found) << one.reason;
   EXPECT_EQ(one.decided->lowest_spindle_speed_rad_per_s, one.decided->highest_spindle_speed_rad_per_s);
   EXPECT_GE(one.decided->cutting_time_s, 0.99 * result.decided->cutting_time_s);
-}
-
-TEST_F(Decide, RejectsBadTables) {
-  const auto rejects = [&](const std::string& table, const std::string& what) {
-    const std::filesystem::path job = folder_.file(
-        "bad.toml",
-        "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n[decide]\n" + table);
-    const std::string text = test::rejection([&] { static_cast<void>(run_job(job, 1)); });
-    EXPECT_NE(text.find(what), std::string::npos) << text;
-    EXPECT_NE(text.find("bad.toml"), std::string::npos) << text;
-  };
-  rejects("free = [\"depth\"]\n", "decide.free");
-  rejects("free = [\"axial_depth\"]\n", "CAM");
-  rejects("free = [\"feed\", \"lead\"]\n", "spindle_speed");
-  rejects("free = [\"spindle_speed\", \"lead\"]\ncone_deg = 50\n", "cone_deg");
-  rejects("cone_step_deg = 0.5\n", "cone_step_deg");
-  rejects("gamma_step_deg = 0.01\n", "gamma_step_deg");
-  rejects("goal = \"money\"\n", "goal");
-  rejects("max_force_n = -1\n", "max_force_n");
-  rejects("chip_thickness_mm = [0.1]\n", "[least, most]");
-  rejects("chip_thickness_mm = [0.1, 0.05]\n", "chip_thickness_mm");
-  rejects("spindle_ramp_rpm_per_s = 0\n", "spindle_ramp_rpm_per_s");
-  rejects("gamma_range_deg = [10, 20]\n", "gamma_range_deg");
-  rejects("speed_change = \"air\"\n", "speed_changes");
 }
 
 }  // namespace decide_test

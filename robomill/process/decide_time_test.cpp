@@ -10,7 +10,7 @@
 #include "robomill/path/sample.hpp"
 #include "robomill/process/decide.hpp"
 #include "robomill/process/decide/block_times.hpp"
-#include "testing/jobs/three_passes.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::process {
@@ -45,7 +45,7 @@ class SlowRobot {
   std::vector<double> reached_m_per_s_ = {}, lost_s_ = {};
 };
 
-class DecideTime : public jobs::testing::ThreePasses {};
+class DecideTime : public testing::ThreePasses {};
 
 // Short lines in which a faster feed gains nothing: the choice is measured in what the robot takes.
 TEST_F(DecideTime, TheRobotTakesNoLongerThanForTheProgramNorForAChoiceByTheFeeds) {

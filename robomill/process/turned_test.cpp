@@ -11,62 +11,65 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/process/files/turned_json.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
-#include "testing/jobs/three_passes.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::process {
 namespace turned_test {
 
-using jobs::PlanResult;
-using jobs::run_job;
+/// A program that was judged, and decided where that was asked for.
+struct Judging {
+  ForcesResult forces;
+  ProgramBlocks blocks;
+  BlocksJudging judging = {};
+  Decision decision = {};
+  [[nodiscard]] JudgedProgram program() const {
+    return {.forces = forces,
+            .blocks = blocks,
+            .judging = judging,
+            .gamma_offset_rad = decision.gamma_offset_rad,
+            .map_blocks = decision.gamma_map ? decision.gamma_map->block : std::vector<std::size_t>()};
+  }
+};
 
-class Turned : public jobs::testing::ThreePasses {
+class Turned : public testing::ThreePasses {
  protected:
   void SetUp() override {
     ThreePasses::SetUp();
     // The tool leans from the flange's axis, so that every joint moves with γ.
-    append("cell.toml", "", "length_mm = 250\n", "length_mm = 250\nmount_rotation_deg = [0, 40, 0]\n");
-  }
-  void append(const std::string& name, const std::string& more, const std::string& from = "",
-              const std::string& to = "") const {
-    std::string text = io::read_file(folder_.at(name));
-    if (!from.empty()) text = test_support::replaced(text, from, to);
-    folder_.file(name, text + more);
+    cell_ = test_support::replaced(cell_, "length_mm = 250\n", "length_mm = 250\nmount_rotation_deg = [0, 40, 0]\n");
   }
   /// Softer where the last joint stands as programmed.
-  DynamicsAt turning() {
-    const double programmed = judged().programmed.forces->program->blocks[10].joints(5);
+  [[nodiscard]] DynamicsAt turning() const {
+    const double programmed = forces().program->blocks[10].joints(5);
     return [programmed](const Eigen::VectorXd& joints) {
       const double away = std::sin(0.5 * (joints(5) - programmed));
       return PostureDynamics{.modes = modes(0.2 + 20.0 * away * away)};
     };
   }
-  PlanResult judged_with(const DynamicsAt& dynamics) {
-    PlanResult plan = judged();
-    plan.judging = {.dynamics = dynamics, .options = {.scan_points = 0}};
-    plan.programmed.blocks = judge_blocks(*plan.programmed.forces, dynamics, plan.judging->options);
-    return plan;
+  [[nodiscard]] Judging judged_with(const DynamicsAt& dynamics) const {
+    Judged judged = judge(dynamics);
+    return {.forces = std::move(judged.forces),
+            .blocks = std::move(judged.blocks),
+            .judging = {.dynamics = dynamics, .options = {.scan_points = 0}}};
   }
-  /// As decide_conditions leaves it.
-  static PlanResult decided(PlanResult plan, const DecideOptions& options) {
-    const Judged programmed = {.forces = *plan.programmed.forces, .blocks = *plan.programmed.blocks};
-    DecideProblem asked = problem(programmed, plan.judging->dynamics);
+  static Judging decided(Judging judging, const DecideOptions& options) {
+    const Judged programmed = {.forces = judging.forces, .blocks = judging.blocks};
+    DecideProblem asked = problem(programmed, judging.judging.dynamics);
     asked.options = options;
     DecideResult found = decide(asked);
     if (found.forces) {
-      plan.decided.emplace();
-      plan.decided->forces = std::move(found.forces);
-      plan.decided->blocks = std::move(found.blocks);
+      judging.forces = *std::move(found.forces);
+      judging.blocks = *std::move(found.blocks);
     }
-    plan.decision = static_cast<Decision&&>(found);
-    return plan;
+    judging.decision = static_cast<Decision&&>(found);
+    return judging;
   }
-  static std::vector<double> ways(const PlanResult& plan) {
-    const program::Program& program = plan.shown().forces->program->program;
+  static std::vector<double> ways(const Judging& judging) {
+    const program::Program& program = judging.forces.program->program;
     std::vector<double> out = {0.0};
     for (std::size_t i = 0; i < program.blocks.size(); ++i) {
       out.push_back(out.back() + (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm());
@@ -81,49 +84,48 @@ std::string numbers_of(const ForcesResult& forces, const ProgramBlocks& blocks) 
 }
 
 TEST_F(Turned, AsProgrammedItIsThePlan) {
-  const PlanResult plan = judged();
-  const TurnedProgram same = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.0}});
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
-  EXPECT_EQ(same.blocks.worst, plan.shown().blocks->worst);
-  EXPECT_EQ(same.blocks.evaluations, plan.shown().blocks->evaluations);
+  const Judging plan = judged_with(constant_dynamics(modes()));
+  const TurnedProgram same = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.0}});
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(plan.forces, plan.blocks));
+  EXPECT_EQ(same.blocks.worst, plan.blocks.worst);
+  EXPECT_EQ(same.blocks.evaluations, plan.blocks.evaluations);
   EXPECT_TRUE(same.blocks.scans.empty());
   EXPECT_TRUE(same.lost.empty());
   // There is no map: every block that cuts is shown.
-  EXPECT_EQ(same.shown.size(), plan.shown().blocks->cutting);
+  EXPECT_EQ(same.shown.size(), plan.blocks.cutting);
 }
 
 // γ counts from the program as programmed, also where the plan has turned it.
 TEST_F(Turned, AtTheChosenGammaItIsThePlan) {
-  const PlanResult plan =
+  const Judging plan =
       decided(judged_with(turning()), {.free = {Free::feed, Free::gamma}, .gamma_step_rad = 15.0 * units::deg});
-  ASSERT_EQ(plan.decision->status, DecideResult::Status::found) << plan.decision->reason;
-  const std::vector<double>& chosen = plan.decision->gamma_offset_rad;
+  ASSERT_EQ(plan.decision.status, DecideResult::Status::found) << plan.decision.reason;
+  const std::vector<double>& chosen = plan.decision.gamma_offset_rad;
   ASSERT_TRUE(std::ranges::any_of(chosen, [](double g) { return g != 0.0; }));
   const std::vector<double> way = ways(plan);
   std::vector<GammaKnot> knots;
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (knots.empty() || way[i] > knots.back().path_m) knots.push_back({.path_m = way[i], .gamma_rad = chosen[i]});
   }
-  const TurnedProgram same = judge_turned(jobs::judged_program(plan), knots);
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
-  EXPECT_NEAR(same.least_stability_margin, plan.decision->decided->least_stability_margin, 1e-12);
-  ASSERT_EQ(same.shown, plan.decision->gamma_map->block);
+  const TurnedProgram same = judge_turned(plan.program(), knots);
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(plan.forces, plan.blocks));
+  EXPECT_NEAR(same.least_stability_margin, plan.decision.decided->least_stability_margin, 1e-12);
+  ASSERT_EQ(same.shown, plan.decision.gamma_map->block);
   for (std::size_t k = 0; k < same.shown.size(); ++k) {
-    EXPECT_NEAR(same.gamma_rad[k], plan.decision->gamma_map->chosen_rad[k], 1e-12);
-    EXPECT_NEAR(same.path_m[k], plan.decision->gamma_map->path_m[k], 1e-12);
+    EXPECT_NEAR(same.gamma_rad[k], plan.decision.gamma_map->chosen_rad[k], 1e-12);
+    EXPECT_NEAR(same.path_m[k], plan.decision.gamma_map->path_m[k], 1e-12);
   }
 }
 
 // The map looks at one block a class (2° of a joint, 5 % of depth and stiffness), here each block is judged.
 TEST_F(Turned, AgreesWithTheMapAtEveryGammaOfIt) {
-  const PlanResult plan =
+  const Judging plan =
       decided(judged_with(turning()), {.free = {Free::feed, Free::gamma}, .gamma_step_rad = 30.0 * units::deg});
-  ASSERT_EQ(plan.decision->status, DecideResult::Status::found) << plan.decision->reason;
-  const GammaMap& map = *plan.decision->gamma_map;
+  ASSERT_EQ(plan.decision.status, DecideResult::Status::found) << plan.decision.reason;
+  const GammaMap& map = *plan.decision.gamma_map;
   int compared = 0;
   for (std::size_t g = 0; g < map.gamma_rad.size(); ++g) {
-    const TurnedProgram turned =
-        judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = map.gamma_rad[g]}});
+    const TurnedProgram turned = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = map.gamma_rad[g]}});
     for (std::size_t k = 0; k < map.block.size(); ++k) {
       const double of_map = map.margin(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(k));
       const double found = turned.blocks.rows[map.block[k]].stability_margin;
@@ -140,17 +142,17 @@ TEST_F(Turned, AgreesWithTheMapAtEveryGammaOfIt) {
 
 // By forward kinematics, and by the compliance there.
 TEST_F(Turned, TheRobotHoldsTheToolSoAndBendsAsItDoesThere) {
-  const PlanResult plan = judged();
+  const Judging plan = judged_with(constant_dynamics(modes()));
   const double end_m = ways(plan).back();
   const std::vector<GammaKnot> knots = {{.path_m = 0.2 * end_m, .gamma_rad = -20.0 * units::deg},
                                         {.path_m = 0.7 * end_m, .gamma_rad = 40.0 * units::deg}};
-  const TurnedProgram turned = judge_turned(jobs::judged_program(plan), knots);
+  const TurnedProgram turned = judge_turned(plan.program(), knots);
   ASSERT_TRUE(turned.lost.empty());
-  const robot::Cell& cell = plan.shown().forces->cell->cell;
+  const robot::Cell& cell = plan.forces.cell->cell;
   const std::vector<double> way = ways(plan);
   bool other = false;
-  for (std::size_t i = 0; i < plan.shown().blocks->rows.size(); ++i) {
-    const BlockResult& was = plan.shown().forces->program->blocks[i];
+  for (std::size_t i = 0; i < plan.blocks.rows.size(); ++i) {
+    const BlockResult& was = plan.forces.program->blocks[i];
     const BlockResult& is = turned.forces.program->blocks[i];
     const robot::ToolPose from = robot::tool_pose(cell, robot::forward(cell.arm, was.joints));
     const robot::ToolPose to = robot::tool_pose(cell, robot::forward(cell.arm, is.joints));
@@ -171,29 +173,28 @@ TEST_F(Turned, TheRobotHoldsTheToolSoAndBendsAsItDoesThere) {
 }
 
 TEST_F(Turned, KeepsTheLeanOfADecision) {
-  append("cell.toml",
-         "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
-         "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n");
-  const ForcesResult programmed = *judged().programmed.forces;
+  cell_ +=
+      "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
+      "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n";
+  const ForcesResult programmed = this->forces();
   const robot::Cell& cell = programmed.cell->cell;
   const DynamicsAt leaning = [&cell](const Eigen::VectorXd& joints) {
     const Eigen::Vector3d axis = robot::tool_pose(cell, robot::forward(cell.arm, joints)).axis;
     return PostureDynamics{.modes = modes(0.05 + 20.0 * (1.0 - axis.z() * axis.z()))};
   };
-  const PlanResult plan = decided(judged_with(leaning), {.free = {Free::spindle_speed, Free::feed, Free::lead},
-                                                         .cone_step_rad = 15.0 * units::deg});
-  ASSERT_EQ(plan.decision->status, DecideResult::Status::found) << plan.decision->reason;
-  ASSERT_NE(plan.decision->stretches.front().lead_rad, 0.0);
-  const TurnedProgram same = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.0}});
-  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(*plan.shown().forces, *plan.shown().blocks));
-  const TurnedProgram turned =
-      judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 10.0 * units::deg}});
+  const Judging plan = decided(judged_with(leaning), {.free = {Free::spindle_speed, Free::feed, Free::lead},
+                                                      .cone_step_rad = 15.0 * units::deg});
+  ASSERT_EQ(plan.decision.status, DecideResult::Status::found) << plan.decision.reason;
+  ASSERT_NE(plan.decision.stretches.front().lead_rad, 0.0);
+  const TurnedProgram same = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.0}});
+  EXPECT_EQ(numbers_of(same.forces, same.blocks), numbers_of(plan.forces, plan.blocks));
+  const TurnedProgram turned = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 10.0 * units::deg}});
   ASSERT_TRUE(turned.lost.empty()) << turned.lost.front().reason;
-  for (std::size_t i = 0; i < plan.shown().blocks->rows.size(); ++i) {
+  for (std::size_t i = 0; i < plan.blocks.rows.size(); ++i) {
     const robot::ToolPose was = robot::tool_pose(cell, robot::forward(cell.arm, programmed.program->blocks[i].joints));
     const robot::ToolPose is =
         robot::tool_pose(cell, robot::forward(cell.arm, turned.forces.program->blocks[i].joints));
-    const program::Pose& end = plan.decided->forces->program->program.blocks[i].end;
+    const program::Pose& end = plan.forces.program->program.blocks[i].end;
     EXPECT_LT((is.tip_m - end.tip_m).norm(), 1e-9) << i;
     EXPECT_LT((is.axis - end.axis).norm(), 1e-9) << i;
     EXPECT_NEAR(is.gamma_rad - was.gamma_rad, 10.0 * units::deg, 1e-9) << i;
@@ -201,22 +202,22 @@ TEST_F(Turned, KeepsTheLeanOfADecision) {
 }
 
 TEST_F(Turned, SaysWhereTheRobotCannotStand) {
-  PlanResult plan = judged_with(turning());
+  Judging plan = judged_with(turning());
   const std::vector<double> way = ways(plan);
   const std::vector<GammaKnot> ramp = {{.path_m = 0.0, .gamma_rad = 0.0},
                                        {.path_m = way.back(), .gamma_rad = 60.0 * units::deg}};
-  const TurnedProgram free = judge_turned(jobs::judged_program(plan), ramp);
+  const TurnedProgram free = judge_turned(plan.program(), ramp);
   ASSERT_TRUE(free.lost.empty());
   EXPECT_TRUE(free.other_way.empty());
-  robot::Joint& last = plan.programmed.forces->cell->cell.arm.joints.back();
-  const double begin = plan.shown().forces->program->blocks.front().joints(5);
+  robot::Joint& last = plan.forces.cell->cell.arm.joints.back();
+  const double begin = plan.forces.program->blocks.front().joints(5);
   const double end = free.forces.program->blocks.back().joints(5);
   (end > begin ? last.max_position : last.min_position) = 0.5 * (begin + end);
   // Where the last joint ends halfway it turns back once …
-  EXPECT_EQ(judge_turned(jobs::judged_program(plan), ramp).other_way.size(), 1U);
+  EXPECT_EQ(judge_turned(plan.program(), ramp).other_way.size(), 1U);
   // … which here it has no room for, nor the others for the wrist to go over.
   (end > begin ? last.min_position : last.max_position) = begin + (end > begin ? -0.3 : 0.3);
-  std::vector<robot::Joint>& joints = plan.programmed.forces->cell->cell.arm.joints;
+  std::vector<robot::Joint>& joints = plan.forces.cell->cell.arm.joints;
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const auto [low, high] = std::ranges::minmax(free.forces.program->blocks, {},
@@ -224,7 +225,7 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
     joints[k].min_position = low.joints(at) - 0.3;
     joints[k].max_position = high.joints(at) + 0.3;
   }
-  const TurnedProgram turned = judge_turned(jobs::judged_program(plan), ramp);
+  const TurnedProgram turned = judge_turned(plan.program(), ramp);
   ASSERT_FALSE(turned.lost.empty());
   EXPECT_LT(turned.lost.size(), way.size() - 1);
   std::vector<bool> lost(turned.blocks.rows.size(), false);
@@ -247,14 +248,14 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
   EXPECT_EQ(json["lost"].size(), turned.lost.size());
   const std::size_t first = turned.lost.front().block;
   EXPECT_EQ(json["lost"][0]["block"], first + 1);
-  EXPECT_EQ(json["lost"][0]["line"], plan.shown().forces->program->program.blocks[first].line);
+  EXPECT_EQ(json["lost"][0]["line"], plan.forces.program->program.blocks[first].line);
   EXPECT_TRUE(json["blocks"]["blocks"]["q6"][first].is_null());
   EXPECT_TRUE(json["blocks"]["blocks"]["stability_margin"][first].is_null());
   EXPECT_EQ(json["unstable"], turned.blocks.unstable);
 
   // Nowhere: no block is left, and that is an answer too.
   for (robot::Joint& joint : joints) joint.max_position = joint.min_position + 1e-3;
-  const TurnedProgram nowhere = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 1.0}});
+  const TurnedProgram nowhere = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 1.0}});
   EXPECT_EQ(nowhere.lost.size(), way.size() - 1);
   EXPECT_TRUE(turned_object(nowhere)["worst_block"].is_null());
   EXPECT_TRUE(turned_object(nowhere)["least_margin"].is_null());
@@ -262,12 +263,12 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
 
 // Obstacles around the tool count as soon as a posture is not the plan's.
 TEST_F(Turned, SaysWhereSomethingIsInTheWay) {
-  append("cell.toml",
-         "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
-         "fixtures = [{ box_from_mm = [-30, -30, 35], box_to_mm = [30, 30, 45] }]\n");
-  const PlanResult plan = judged_with(constant_dynamics(modes(20.0)));
-  EXPECT_TRUE(judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.0}}).lost.empty());
-  const TurnedProgram turned = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.1}});
+  cell_ +=
+      "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
+      "fixtures = [{ box_from_mm = [-30, -30, 35], box_to_mm = [30, 30, 45] }]\n";
+  const Judging plan = judged_with(constant_dynamics(modes(20.0)));
+  EXPECT_TRUE(judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.0}}).lost.empty());
+  const TurnedProgram turned = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.1}});
   ASSERT_FALSE(turned.lost.empty());
   EXPECT_NE(turned.lost.front().reason.find("holder"), std::string::npos) << turned.lost.front().reason;
   EXPECT_NE(turned.notes.back().find("cannot stand"), std::string::npos) << turned.notes.back();
@@ -275,9 +276,9 @@ TEST_F(Turned, SaysWhereSomethingIsInTheWay) {
 
 // Weight and cut at rest, against what the drives give.
 TEST_F(Turned, SaysWhereADriveGivesNoMore) {
-  PlanResult plan = judged_with(constant_dynamics(modes(20.0)));
+  Judging plan = judged_with(constant_dynamics(modes(20.0)));
   const auto noted = [&] {
-    const TurnedProgram turned = judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.1}});
+    const TurnedProgram turned = judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.1}});
     const bool says = std::ranges::any_of(turned.notes, [](const std::string& note) {
       return note.find("a drive gives more than its torque") != std::string::npos;
     });
@@ -287,19 +288,19 @@ TEST_F(Turned, SaysWhereADriveGivesNoMore) {
     return says;
   };
   EXPECT_FALSE(noted()) << "no drive has a limit";
-  for (robot::Joint& joint : plan.programmed.forces->cell->cell.arm.joints) {
+  for (robot::Joint& joint : plan.forces.cell->cell.arm.joints) {
     joint.link.mass_kg = 50.0;
     joint.max_torque = 1e6;
   }
   EXPECT_FALSE(noted());
-  plan.programmed.forces->cell->cell.arm.joints[1].max_torque = 1.0;
+  plan.forces.cell->cell.arm.joints[1].max_torque = 1.0;
   EXPECT_TRUE(noted());
 }
 
 TEST_F(Turned, RejectsWhatItCannotTurnAndEndsWhenAsked) {
-  PlanResult plan = judged();
+  Judging plan = judged_with(constant_dynamics(modes()));
   const auto said = [&](const std::vector<GammaKnot>& knots) {
-    return test::field_of([&] { static_cast<void>(judge_turned(jobs::judged_program(plan), knots)); });
+    return test::field_of([&] { static_cast<void>(judge_turned(plan.program(), knots)); });
   };
   EXPECT_EQ(said({}), "gamma");
   EXPECT_EQ(said({{.path_m = 0.1}, {.path_m = 0.1}}), "path_m");
@@ -307,11 +308,8 @@ TEST_F(Turned, RejectsWhatItCannotTurnAndEndsWhenAsked) {
   EXPECT_EQ(said({{.path_m = 0.0, .gamma_rad = HUGE_VAL}}), "gamma_rad");
   const std::atomic<bool> stop = true;
   Progress stopped({}, &stop);
-  EXPECT_THROW(
-      static_cast<void>(judge_turned(jobs::judged_program(plan), {{.path_m = 0.0, .gamma_rad = 0.5}}, stopped)),
-      Interrupted);
-  plan.judging.reset();
-  EXPECT_EQ(said({{.path_m = 0.0}}), "plan");
+  EXPECT_THROW(static_cast<void>(judge_turned(plan.program(), {{.path_m = 0.0, .gamma_rad = 0.5}}, stopped)),
+               Interrupted);
 }
 
 }  // namespace turned_test

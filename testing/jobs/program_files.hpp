@@ -7,11 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/base/progress.hpp"
-#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/forces.hpp"
-#include "testing/support.hpp"
 
 namespace robomill::test_support {
 
@@ -63,19 +59,6 @@ dexel_mm = {}
                      cut.radial_n_per_mm2, cut.axial_n_per_mm2, cut.tangential_edge_n_per_mm, cut.radial_edge_n_per_mm,
                      cut.min_mm[0], cut.min_mm[1], cut.min_mm[2], cut.max_mm[0], cut.max_mm[1], cut.max_mm[2],
                      cut.dexel_mm);
-}
-
-/// What the files of a program hold.
-struct ProgramFiles {
-  std::string cell, forces, program;
-};
-
-/// Writes them and runs the program.
-inline process::ForcesResult forces_along(const test::Folder& folder, const ProgramFiles& files,
-                                          const process::ProgramRun& run) {
-  return jobs::run_forces_along(
-      process::read_forces(folder.file("forces.toml", files.forces), process::ForcesJob::program),
-      folder.file("part.ngc", files.program), cell::read_cell(folder.file("cell.toml", files.cell)), run);
 }
 
 }  // namespace robomill::test_support

@@ -17,7 +17,7 @@
 #include "robomill/process/blocks/stability.hpp"
 #include "robomill/process/compensate.hpp"
 #include "robomill/stability/surface_error.hpp"
-#include "testing/jobs/program_files.hpp"
+#include "testing/process/programs.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::process {
@@ -48,12 +48,9 @@ double greatest_error_m(const ForcesResult& forces, std::size_t block, const mod
 class FinishedSurface : public ::testing::Test {
  protected:
   /// Of an arm that hardly bends.
-  ForcesResult forces_of(const std::string& program, const test_support::CutFile& cut = {}) {
-    return test_support::forces_along(folder_,
-                                      {.cell = test_support::arm_cell(ROBOMILL_SOURCE_DIR, 2e10),
-                                       .forces = test_support::forces_file(cut),
-                                       .program = program},
-                                      {.keep_cuts = true, .deflect = true});
+  static ForcesResult forces_of(const std::string& program, const test_support::CutFile& cut = {}) {
+    return testing::forces_along(testing::cut_of(cut),
+                                 testing::cell_of(test_support::arm_cell(ROBOMILL_SOURCE_DIR, 2e10)), program);
   }
   static DynamicsAt dynamics(double mass = 1.0) {
     return constant_dynamics(
@@ -68,7 +65,6 @@ class FinishedSurface : public ::testing::Test {
     for (int i = 1; beside_mm != 0.0 && i <= 18; ++i) text += fmt::format("G1 X{}\n", 18 - 2 * i);
     return text + "G0 Z5\nM2\n";
   }
-  test::Folder folder_;
 };
 
 // Of two passes of a ball end side by side each leaves what lies on its own side of the plane midway between them.
