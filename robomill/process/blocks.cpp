@@ -31,7 +31,7 @@ namespace {
 /// Each cutting block to a class; evaluation is its number.
 std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOptions& options,
                                     std::vector<BlockRow>& rows) {
-  Classes classes({.joint_rad = options.joint_tolerance_rad, .cut_share = options.cut_tolerance});
+  Classes classes(options.alike);
   const ProgramForces& program = *forces.program;
   const Eigen::Matrix3d base_from_work = forces.cell->cell.workpiece.linear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -202,9 +202,13 @@ bool worse(const BlockRow& a, const BlockRow& b) {
   return rank(a) < rank(b);
 }
 
+void BlockTolerance::validate() const {
+  require_non_negative("joint_rad", joint_rad, "rad");
+  require_non_negative("cut_share", cut_share, "");
+}
+
 void BlocksOptions::validate() const {
-  require_non_negative("joint_tolerance_rad", joint_tolerance_rad, "rad");
-  require_non_negative("cut_tolerance", cut_tolerance, "");
+  alike.validate();
   require_positive("tolerance", tolerance, "");
   if (scan_points < 0 || (scan_points > 0 && scan_points % 2 == 0)) {
     throw InvalidInput("scan_points", scan_points, "", "must be 0 or odd");

@@ -46,11 +46,17 @@ using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>
 /// The same modes in every posture.
 [[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);
 
+/// Blocks share an evaluation where no joint differs by more than joint_rad, and mean cutting stiffness (in base axes),
+/// depth and, where it counts, feed per tooth by no more than cut_share.
+struct ROBOMILL_API BlockTolerance {
+  double joint_rad = 0.0174532925199433;  ///< [rad], >= 0
+  double cut_share = 0.02;                ///< >= 0
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
 struct ROBOMILL_API BlocksOptions {
-  /// Blocks share an evaluation where no joint differs by more than this [rad], >= 0 …
-  double joint_tolerance_rad = 0.0174532925199433;
-  /// … and mean cutting stiffness (in base axes) and depth by no more than this share, >= 0.
-  double cut_tolerance = 0.02;
+  BlockTolerance alike = {};
   double tolerance = 1e-4;  ///< of the spectral radius, as LobesOptions::tolerance
   int scan_points = 9;      ///< of each scan of the limit over the tool's pose, 0: none, or odd
   /// A workpiece that vibrates is known beside that of the cut.

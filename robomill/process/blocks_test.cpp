@@ -143,7 +143,7 @@ TEST_F(Blocks, TheSurfaceErrorOfASlotIsThatOfTheAnalyticCut) {
 TEST_F(Blocks, SharedEvaluationsAreCloseToOwnOnes) {
   const ForcesResult forces = forces_of(1.0, {}, wave());
   const ProgramBlocks own =
-      judge_blocks(forces, dynamics(0.1), {.joint_tolerance_rad = 0.0, .cut_tolerance = 0.0, .scan_points = 0});
+      judge_blocks(forces, dynamics(0.1), {.alike = {.joint_rad = 0.0, .cut_share = 0.0}, .scan_points = 0});
   const ProgramBlocks shared = judge_blocks(forces, dynamics(0.1), {.scan_points = 0});
   EXPECT_EQ(own.evaluations, own.cutting);
   EXPECT_LT(shared.evaluations, own.cutting);
@@ -199,7 +199,7 @@ TEST_F(Blocks, SaysWhereTheProgramLeavesTheMeasuredRegion) {
                                                 mode.frequency_std_hz = 0.01 * mode.frequency_hz;
                                               return out;
                                             },
-                                            {.joint_tolerance_rad = 1e-3, .scan_points = 0});
+                                            {.alike = {.joint_rad = 1e-3}, .scan_points = 0});
   const auto said = std::ranges::count_if(block_warnings(forces, blocks), [](const std::string& text) {
     return text.find("(line ") != std::string::npos && text.find("11.5° of a joint") != std::string::npos &&
            text.find("median within the measured region") != std::string::npos;
@@ -253,7 +253,7 @@ TEST_F(Blocks, SaysInWhichBlockTheDynamicsAreNotKnown) {
     return known(joints);
   };
   const std::string said = test::rejection(
-      [&] { static_cast<void>(judge_blocks(forces, fails, {.joint_tolerance_rad = 1e-3, .scan_points = 0})); });
+      [&] { static_cast<void>(judge_blocks(forces, fails, {.alike = {.joint_rad = 1e-3}, .scan_points = 0})); });
   EXPECT_TRUE(said.starts_with("block ")) << said;
   EXPECT_NE(said.find("): joints: is where no mode is known"), std::string::npos) << said;
 }

@@ -85,7 +85,7 @@ class OffsetSearch {
   OffsetSearch(const ForcesResult& forces, const DynamicsAt& dynamics, const CompensateOptions& options,
                Progress& progress)
       : program_(forces.program->program), options_(options), runs_(forces, dynamics, options, progress) {
-    mirror_ = {.max_offset_m = options.max_offset_m,
+    mirror_ = {.max_offset_m = options.offsets.max_offset_m,
                .blend_m = options.blend_m > 0.0 ? options.blend_m : forces.cut.cutter.mill.diameter_m};
     const std::size_t count = program_.blocks.size();
     points_.point_m.assign(count + 1, Eigen::Vector3d::Zero());
@@ -205,7 +205,7 @@ void report(const OffsetSearch& search, const CompensateOptions& options, Compen
                 "leave both walls of a slot, which want opposite offsets, and are not compensated", out);
   warn_of_state(BlockState::lost, "would lose the cut and are not compensated", out);
   const std::string bound =
-      fmt::format("are offset by the most that is allowed, {:.4g} mm", options.max_offset_m / units::mm);
+      fmt::format("are offset by the most that is allowed, {:.4g} mm", options.offsets.max_offset_m / units::mm);
   warn_of_state(BlockState::bounded, bound.c_str(), out);
   if (out.status == Compensation::Status::unsettled) {
     out.warnings.push_back(
@@ -237,13 +237,12 @@ void report(const OffsetSearch& search, const CompensateOptions& options, Compen
 }  // namespace
 
 void CompensateOptions::validate() const {
-  require_positive("max_offset_m", max_offset_m, "m");
+  offsets.validate();
   require_non_negative("blend_m", blend_m, "m");
   require_positive("tolerance_m", tolerance_m, "m");
   require_non_negative("tolerance_share", tolerance_share, "");
   require_positive("tolerance", tolerance, "");
-  require_non_negative("joint_tolerance_rad", joint_tolerance_rad, "rad");
-  require_non_negative("cut_tolerance", cut_tolerance, "");
+  alike.validate();
   if (most_passes < 1 || most_passes > 20) {
     throw InvalidInput("most_passes", most_passes, "", "must be 1 to 20");
   }
@@ -256,7 +255,7 @@ Compensation compensate(const ForcesResult& forces, const DynamicsAt& dynamics, 
   Compensation out;
   out.program = forces.program->program;
   out.blocks.resize(out.program.blocks.size());
-  if (options.controller_compensates) {
+  if (options.offsets.controller_compensates) {
     out.status = Compensation::Status::left_to_controller;
     out.notes.emplace_back("The controller compensates the deflection: the program is left as it is.");
     return out;

@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/process/blocks.hpp"
+#include "robomill/process/decide_options.hpp"
 #include "robomill/process/forces.hpp"
 #include "robomill/program/program.hpp"
 
@@ -16,18 +17,14 @@
 namespace robomill::process {
 
 struct ROBOMILL_API CompensateOptions {
-  /// The robot's controller moves the path against the deflection already: the program is left as it is.
-  bool controller_compensates = false;
-  double max_offset_m = 0.5e-3;  ///< > 0; longer offsets are cut off there
+  PathOffsets offsets = {};
   /// >= 0; way over which an offset dies away along blocks that are not compensated; 0: the cutter's diameter.
   double blend_m = 0.0;
   double tolerance_m = 1e-6;      ///< > 0: settled where no offset changes by more than this …
   double tolerance_share = 0.02;  ///< … or than this share of it, >= 0
   int most_passes = 5;            ///< 1 to 20
   double tolerance = 1e-4;        ///< of the spectral radius, as LobesOptions::tolerance
-  /// As in BlocksOptions; feeds per tooth of blocks that share an evaluation differ by no more than cut_tolerance.
-  double joint_tolerance_rad = 0.0174532925199433;
-  double cut_tolerance = 0.01;
+  BlockTolerance alike = {.cut_share = 0.01};
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -70,7 +67,7 @@ struct Compensation {
     settled,            ///< offsets and what they do to the force agree
     unsettled,          ///< offsets still change after the last pass; the errors are those of the last one
     nothing_to_do,      ///< no finishing pass that could be compensated
-    left_to_controller  ///< CompensateOptions::controller_compensates
+    left_to_controller  ///< PathOffsets::controller_compensates
   };
   Status status = Status::nothing_to_do;
   program::Program program;                   ///< with the ends of its blocks moved; all else as it was

@@ -364,7 +364,8 @@ TEST_F(Compensate, ChatterIsNotCompensated) {
 
 TEST_F(Compensate, TheBoundBinds) {
   const WallJob job = {.depth = 4.0, .length = 24.0};
-  const Compensation result = compensate(forces_of(job), dynamics_of(arm_swings()), {.max_offset_m = 10e-6});
+  const Compensation result =
+      compensate(forces_of(job), dynamics_of(arm_swings()), {.offsets = {.max_offset_m = 10e-6}});
   EXPECT_GE(count(result, State::bounded), 8);
   EXPECT_TRUE(says(result.warnings, "the most that is allowed, 0.01 mm"));
   EXPECT_LE(result.largest_offset_m, 10e-6 * (1.0 + 1e-12));
@@ -393,7 +394,8 @@ TEST_F(Compensate, TheJointsFollowToTheMovedEnds) {
 TEST_F(Compensate, AControllerThatCompensatesIsLeftToIt) {
   const WallJob job = {.depth = 4.0, .length = 24.0};
   const ForcesResult forces = forces_of(job);
-  const Compensation result = compensate(forces, dynamics_of(arm_swings()), {.controller_compensates = true});
+  const Compensation result =
+      compensate(forces, dynamics_of(arm_swings()), {.offsets = {.controller_compensates = true}});
   EXPECT_EQ(result.status, Compensation::Status::left_to_controller);
   EXPECT_TRUE(says(result.notes, "controller"));
   for (std::size_t i = 0; i < result.blocks.size(); ++i) {
@@ -428,15 +430,15 @@ TEST_F(Compensate, BadInputIsRejected) {
   const auto field = [&](const CompensateOptions& options) {
     return test::field_of([&] { static_cast<void>(compensate(forces, dynamics, options)); });
   };
-  EXPECT_EQ(field({.max_offset_m = 0.0}), "max_offset_m");
-  EXPECT_EQ(field({.max_offset_m = nan}), "max_offset_m");
+  EXPECT_EQ(field({.offsets = {.max_offset_m = 0.0}}), "max_offset_m");
+  EXPECT_EQ(field({.offsets = {.max_offset_m = nan}}), "max_offset_m");
   EXPECT_EQ(field({.blend_m = -1.0}), "blend_m");
   EXPECT_EQ(field({.tolerance_m = 0.0}), "tolerance_m");
   EXPECT_EQ(field({.tolerance_share = nan}), "tolerance_share");
   EXPECT_EQ(field({.most_passes = 0}), "most_passes");
   EXPECT_EQ(field({.most_passes = 21}), "most_passes");
-  EXPECT_EQ(field({.joint_tolerance_rad = -1.0}), "joint_tolerance_rad");
-  EXPECT_EQ(field({.cut_tolerance = nan}), "cut_tolerance");
+  EXPECT_EQ(field({.alike = {.joint_rad = -1.0}}), "joint_rad");
+  EXPECT_EQ(field({.alike = {.cut_share = nan}}), "cut_share");
   const DynamicsAt nothing = [](const Eigen::VectorXd&) { return PostureDynamics{}; };
   EXPECT_NE(test::rejection([&] { static_cast<void>(compensate(forces, nothing)); }).find("block "), std::string::npos);
   forces.program->stock.reset();

@@ -15,6 +15,10 @@ constexpr double widest_cone_rad = (1.0 + 1e-9) * std::numbers::pi / 4.0;
 
 }  // namespace
 
+void PathOffsets::validate() const {
+  require_positive("max_offset_m", max_offset_m, "m");
+}
+
 bool DecideOptions::leans_free() const {
   return is_free(Free::lead) || is_free(Free::tilt);
 }
@@ -42,7 +46,7 @@ void DecideOptions::validate() const {
     require_non_negative(name, range[1], unit);
     if (range[1] > 0.0 && range[0] > range[1]) throw InvalidInput(name, range[0], unit, "must not be above the most");
   }
-  require_positive("max_offset_m", max_offset_m, "m");
+  offsets.validate();
   if (!(gamma_range_rad[0] <= 0.0 && gamma_range_rad[1] >= 0.0)) {
     throw InvalidInput("gamma_range_rad", "must hold 0, where the program has it");
   }

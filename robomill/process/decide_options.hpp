@@ -30,6 +30,14 @@ enum class SpeedChanges {
 };
 inline constexpr Name<SpeedChanges> speed_change_names[] = {{"none", SpeedChanges::none}, {"air", SpeedChanges::air}};
 
+/// How finishing passes are moved against the deflection that is predicted.
+struct ROBOMILL_API PathOffsets {
+  double max_offset_m = 0.5e-3;         ///< > 0; longer offsets are cut off there
+  bool controller_compensates = false;  ///< the robot's controller does it already: the program is left as it is
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
 /// What is free, and what must be kept beside spindle, safety and finishing.
 struct ROBOMILL_API DecideOptions {
   /// Nothing: the program is judged as it is.
@@ -50,9 +58,8 @@ struct ROBOMILL_API DecideOptions {
   double gamma_step_rad = 0.261799387799149;  ///< >= 1°
   /// Leans of the tool from where the program has it, where lead or tilt are free: in (0, 45°], and its steps, >= 1°.
   double cone_rad = 0.261799387799149, cone_step_rad = 0.130899693899575;
-  bool compensate = false;              ///< finishing passes are moved by the deflection that is predicted
-  double max_offset_m = 0.5e-3;         ///< > 0; … by this at most
-  bool controller_compensates = false;  ///< the robot's controller does that already
+  bool compensate = false;  ///< finishing passes are moved
+  PathOffsets offsets = {};
   [[nodiscard]] bool is_free(Free what) const;
   [[nodiscard]] bool leans_free() const;  ///< lead or tilt
   /// @throws InvalidInput naming the member

@@ -268,8 +268,8 @@ TEST_F(Decide, FinishingPassesAreMovedWhereThatIsAskedFor) {
                                       .norm());
   }
   EXPECT_GT(farthest, 0.0);
-  EXPECT_LE(farthest, asked.options.max_offset_m);
-  asked.options.controller_compensates = true;
+  EXPECT_LE(farthest, asked.options.offsets.max_offset_m);
+  asked.options.offsets.controller_compensates = true;
   const DecideResult left = decide(asked);
   EXPECT_FALSE(left.compensation.has_value());
   EXPECT_NEAR(left.decided->cutting_time_s, plain.decided->cutting_time_s, 1e-9);

@@ -222,8 +222,8 @@ TurnedProgram judge_turned(const JudgedProgram& judged, const std::vector<GammaK
   options.scan_points = 0;
   if (turning.turns()) {
     // As the map: nobody who drags a line of γ waits for more.
-    options.joint_tolerance_rad = std::max(options.joint_tolerance_rad, look_tolerance.joint_rad);
-    options.cut_tolerance = std::max(options.cut_tolerance, look_tolerance.cut_share);
+    options.alike.joint_rad = std::max(options.alike.joint_rad, look_tolerance.joint_rad);
+    options.alike.cut_share = std::max(options.alike.cut_share, look_tolerance.cut_share);
   }
   out.blocks = judge_blocks(out.forces, judged.judging.dynamics, options, progress);
   for (const BlockRow& row : out.blocks.rows) {

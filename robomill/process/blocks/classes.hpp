@@ -5,6 +5,7 @@
 
 #include "robomill/cutting/force.hpp"
 #include "robomill/cutting/program_engagement.hpp"
+#include "robomill/process/blocks.hpp"
 
 namespace robomill::process {
 
@@ -24,16 +25,11 @@ struct CutLook {
   Eigen::VectorXd joints = {};
 };
 
-/// Within how much they are.
-struct LookTolerance {
-  double joint_rad = 0.0, cut_share = 0.0;
-};
-
 /// Sorts blocks into classes as they come: a block joins the class of the latest first block that it is like, of as
 /// many as a zigzag needs; else it opens one. Time a block does not grow with the blocks.
 class Classes {
  public:
-  explicit Classes(const LookTolerance& tolerance) : tolerance_(tolerance) {}
+  explicit Classes(const BlockTolerance& tolerance) : tolerance_(tolerance) {}
   /// The class of the block; classes().back() is the block itself where it opened one.
   std::size_t add(std::size_t block, const CutLook& look);
   /// The first block of each.
@@ -42,7 +38,7 @@ class Classes {
  private:
   [[nodiscard]] bool alike(const CutLook& a, const CutLook& b) const;
   static constexpr std::size_t remembered = 512;
-  LookTolerance tolerance_;
+  BlockTolerance tolerance_;
   std::vector<std::size_t> first_ = {};
   std::vector<CutLook> latest_ = {};  ///< of class k at k % remembered
 };

@@ -76,7 +76,7 @@ TEST_F(FinishedSurface, IsWhatLaterPassesLeave) {
   for (const double beside_mm : {-0.5, 0.5}) {
     const ForcesResult forces = forces_of(to_and_fro(beside_mm));
     const ProgramBlocks blocks =
-        judge_blocks(forces, dynamics(), {.joint_tolerance_rad = 0.0, .cut_tolerance = 0.0, .scan_points = 0});
+        judge_blocks(forces, dynamics(), {.alike = {.joint_rad = 0.0, .cut_share = 0.0}, .scan_points = 0});
     const std::vector<CompensatedBlock> left = compensate(forces, dynamics(), {.most_passes = 1}).blocks;
     for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
       const BlockRow& row = blocks.rows[i];
@@ -173,7 +173,7 @@ TEST_F(FinishedSurface, IsNotSharedBySlotsAcrossEachOther) {
   const DynamicsAt uneven =
       constant_dynamics(modal::modes_from_mass({{410, 0.03, 60.0}}, {{530, 0.03, 5.0}}, {{780, 0.03, 8.0}}));
   const ProgramBlocks own =
-      judge_blocks(forces, uneven, {.joint_tolerance_rad = 0.0, .cut_tolerance = 0.0, .scan_points = 0});
+      judge_blocks(forces, uneven, {.alike = {.joint_rad = 0.0, .cut_share = 0.0}, .scan_points = 0});
   const ProgramBlocks shared = judge_blocks(forces, uneven, {.scan_points = 0});
   EXPECT_LT(shared.evaluations, own.evaluations);
   int compared = 0;

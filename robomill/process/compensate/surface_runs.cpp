@@ -66,7 +66,7 @@ std::vector<cutting::BlockForce> SurfaceRuns::cut_once(const program::Program& p
 }
 
 void SurfaceRuns::sort_cuts(const std::vector<cutting::BlockForce>& forces) {
-  Classes classes({.joint_rad = options_.joint_tolerance_rad, .cut_share = options_.cut_tolerance});
+  Classes classes(options_.alike);
   const Eigen::Matrix3d base_from_work = forces_.cell->cell.workpiece.linear();
   cut_of_.assign(forces.size(), no_cut);
   for (std::size_t i = 0; i < forces.size(); ++i) {

@@ -51,9 +51,7 @@ bool slow_down(const BlockModel& model, program::Program& program, const std::ve
 }  // namespace
 
 void compensate_found(const DecideProblem& problem, const BlockModel& model, DecideResult& out, Progress& progress) {
-  const CompensateOptions options = {.controller_compensates = problem.options.controller_compensates,
-                                     .max_offset_m = problem.options.max_offset_m,
-                                     .tolerance = problem.blocks_options.tolerance};
+  const CompensateOptions options = {.offsets = problem.options.offsets, .tolerance = problem.blocks_options.tolerance};
   Compensation moved = compensate(*out.forces, problem.dynamics, options, progress);
   out.notes.insert(out.notes.end(), moved.warnings.begin(), moved.warnings.end());
   out.notes.insert(out.notes.end(), moved.notes.begin(), moved.notes.end());

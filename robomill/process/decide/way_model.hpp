@@ -22,7 +22,7 @@
 namespace robomill::process {
 
 /// Blocks that one look stands for differ by no more: it is the exact run that judges each of them.
-inline constexpr LookTolerance look_tolerance = {.joint_rad = 2.0 * units::deg, .cut_share = 0.05};
+inline constexpr BlockTolerance look_tolerance = {.joint_rad = 2.0 * units::deg, .cut_share = 0.05};
 
 /// The greatest feed of the tip at which no joint is faster than its limit over a block.
 struct JointSpeed {

@@ -75,8 +75,8 @@ DecideOptions read_decide(io::TomlFile& file, bool along_program) {
   file.number("decide.cone_deg", "cone_rad", units::deg, out.cone_rad);
   file.number("decide.cone_step_deg", "cone_step_rad", units::deg, out.cone_step_rad);
   file.boolean("decide.compensate", out.compensate);
-  file.number("decide.max_offset_um", "max_offset_m", units::um, out.max_offset_m);
-  file.boolean("decide.controller_compensates", out.controller_compensates);
+  file.number("decide.max_offset_um", "max_offset_m", units::um, out.offsets.max_offset_m);
+  file.boolean("decide.controller_compensates", out.offsets.controller_compensates);
   try {
     file.locate([&] { out.validate(); });
   } catch (const InvalidInput& error) {
