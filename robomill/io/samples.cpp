@@ -6,8 +6,8 @@
 #include <cctype>
 #include <optional>
 
-#include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "robomill/io/toml_lines.hpp"
 
 namespace robomill::io {
@@ -61,18 +61,17 @@ std::string sample_mark(std::string_view value) {
   return out;
 }
 
-std::vector<Assumption> sample_values(const TomlSource& source) {
+std::vector<Assumption> sample_values(const TomlFile& document) {
   std::vector<Assumption> out;
-  const std::string text = source.text ? *source.text : read_file(source.path);
-  for (const TomlLine& line : toml_lines(text)) {
-    const std::optional<Marked> found = line.is_comment ? std::nullopt : marked(line.text);
-    if (!found || found->mark != sample_mark(found->value)) continue;
-    const auto sets = [&](const TomlSetting& setting) { return setting.key.starts_with(line.key); };
-    if (std::ranges::any_of(source.settings, sets)) continue;
-    out.push_back({.what = sample_left,
-                   .taken = std::string(found->value),
-                   .key = shown_key(line.key),
-                   .file = source.path.filename().string()});
+  for (const TomlText& text : document.texts()) {
+    for (const TomlLine& line : toml_lines(text.content)) {
+      const std::optional<Marked> found = line.is_comment ? std::nullopt : marked(line.text);
+      if (!found || found->mark != sample_mark(found->value) || !document.took(line.key)) continue;
+      out.push_back({.what = sample_left,
+                     .taken = std::string(found->value),
+                     .key = shown_key(line.key),
+                     .file = text.path.filename().string()});
+    }
   }
   return out;
 }

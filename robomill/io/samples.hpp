@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
-#include "robomill/io/toml_source.hpp"
 
 // Method: robomill/io/README.md, "Sample values"
 
 namespace robomill::io {
+
+class TomlFile;
 
 /// What an assumption says that is a sample value.
 inline constexpr const char* sample_left = "Sample value left as it was";
@@ -19,10 +20,9 @@ inline constexpr const char* sample_left = "Sample value left as it was";
 /// @param value  as TOML writes it, in one line
 [[nodiscard]] std::string sample_mark(std::string_view value);
 
-/// The values of a document that are still what their marks say: nobody has given them. Keys that the source sets are
+/// The values that were read and are still what their marks say: nobody has given them. Keys that the source sets are
 /// given.
-/// @throws InvalidInput if the file cannot be read
-[[nodiscard]] std::vector<Assumption> sample_values(const TomlSource& source);
+[[nodiscard]] std::vector<Assumption> sample_values(const TomlFile& document);
 
 /// A document whose key bears no mark any more: somebody has given its value.
 [[nodiscard]] std::string without_sample_mark(std::string document, std::string_view key);

@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "robomill/io/toml_file.hpp"
+#include "testing/samples.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::io {
 namespace samples_test {
+
+using test_support::all_samples;
 
 const std::string document =
     "[tool]\n"
@@ -27,7 +30,7 @@ const std::string document =
 
 std::vector<std::string> keys(const TomlSource& source) {
   std::vector<std::string> out;
-  for (const Assumption& one : sample_values(source)) out.push_back(one.key + " " + one.taken);
+  for (const Assumption& one : all_samples(source)) out.push_back(one.key + " " + one.taken);
   return out;
 }
 
@@ -36,7 +39,7 @@ TEST(Samples, AreTheValuesThatAreStillWhatTheirMarksSay) {
             (std::vector<std::string>{"tool.teeth 3", "tool.kind \"flat-end\"",
                                       "dynamics.x [{ frequency_hz = 620, damping_ratio = 0.03 }]",
                                       "hits[2].file \"b.csv\""}));
-  const Assumption first = sample_values(TomlSource("folder/d.toml", document)).front();
+  const Assumption first = all_samples(TomlSource("folder/d.toml", document)).front();
   EXPECT_EQ(first.file, "d.toml");
   EXPECT_EQ(first.what, "Sample value left as it was");
 }

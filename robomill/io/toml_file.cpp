@@ -10,11 +10,12 @@
 #include <set>
 #include <span>
 
-#include "robomill/io/file.hpp"
 #include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml_assembly.hpp"
 #include "robomill/io/toml_lines.hpp"
 #include "robomill/io/toml_synonyms.hpp"
+#include "robomill/io/toml_tables.hpp"
 #include "robomill/io/toml_tree.hpp"
 #include "robomill/io/usual_ranges.hpp"
 
@@ -52,15 +53,6 @@ std::optional<int> whole_number(const toml::node& node) {
     return std::nullopt;
   }
   return static_cast<int>(*number);
-}
-
-/// A value as the file has it; empty for tables and arrays.
-std::string value_text(const toml::node& node) {
-  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
-  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
-  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
-  return {};
 }
 
 /// "pitch_rad[2]" is an entry of "pitch_rad": how much of field names the row's member, 0 if none of it does.
@@ -105,7 +97,8 @@ bool put(toml::node& node, std::string_view path, const toml::node& value) {
 
 struct TomlFile::State {
   std::filesystem::path path;
-  std::string content;
+  std::vector<TomlText> texts;
+  std::vector<std::string> set_keys;  ///< by the source
   toml::table root;
   std::set<std::string, std::less<>> known;  ///< every key that was asked for
   std::vector<Row> rows;
@@ -114,10 +107,23 @@ struct TomlFile::State {
     known.emplace(key);
     return find_node(root, key);
   }
+  /// The file that a node stands in: the document, or one that it includes.
+  [[nodiscard]] std::filesystem::path file_of(const toml::node* node) const {
+    const bool named = node != nullptr && node->source().path;
+    return named ? std::filesystem::path(*node->source().path) : path;
+  }
   [[nodiscard]] std::string where(const toml::node* node) const {
-    const std::string file = path.string();
+    const std::string file = file_of(node).string();
     const bool in_text = node != nullptr && node->source().begin.line > 0;  // and not set
     return in_text ? fmt::format("{}:{}", file, node->source().begin.line) : file;
+  }
+  [[nodiscard]] bool asked_below(const std::string& key, const char* joint) const {
+    const auto first = known.lower_bound(key + joint);
+    return first != known.end() && first->starts_with(key + joint);
+  }
+  /// Whether nothing of this table was asked for, which readers of other tables know.
+  [[nodiscard]] bool is_of_others(const std::string& table) const {
+    return is_known_table(table) && !known.contains(table) && !asked_below(table, ".") && !asked_below(table, "[");
   }
   void set(const TomlSetting& setting);
   [[nodiscard]] std::string suggestion(std::string_view key) const;
@@ -147,13 +153,14 @@ void TomlFile::State::set(const TomlSetting& setting) {
   }
   if (one.size() != 1) throw rejected("is no value of TOML");
   if (!put(root, setting.key, *one.get("value"))) throw rejected("is no key of this document that can be set");
+  set_keys.push_back(setting.key);
 }
 
 TomlFile::TomlFile(const TomlSource& source) : state_(std::make_unique<State>()) {
-  const std::string name = source.path.string();
   state_->path = source.path;
-  state_->content = source.text ? *source.text : read_file(source.path, std::uintmax_t{64} << 20);
-  state_->root = parse_toml(state_->content, name);
+  TomlAssembly assembly = assemble(source);
+  state_->texts = std::move(assembly.texts);
+  state_->root = std::move(assembly.root);
   for (const TomlSetting& setting : source.settings) state_->set(setting);
 }
 
@@ -259,7 +266,8 @@ bool TomlFile::paths(std::string_view key, std::vector<std::filesystem::path>& o
   std::vector<std::string> names;
   if (!texts(key, names)) return false;
   out.clear();
-  for (const std::string& name : names) out.push_back(state_->path.parent_path() / name);
+  const std::filesystem::path folder = file_of(key).parent_path();
+  for (const std::string& name : names) out.push_back(folder / name);
   return true;
 }
 
@@ -267,8 +275,37 @@ bool TomlFile::path(std::string_view key, std::filesystem::path& out) {
   std::string name;
   if (!text(key, name)) return false;
   if (name.empty()) throw reject(key, "must name a file");
-  out = state_->path.parent_path() / name;
+  out = file_of(key).parent_path() / name;
   return true;
+}
+
+std::filesystem::path TomlFile::file_of(std::string_view key) const {
+  return state_->file_of(nearest(state_->root, key));
+}
+
+std::filesystem::path TomlFile::file_of_part(std::string_view key, std::string_view table) const {
+  const toml::node* named = find_node(state_->root, key);
+  if (named == nullptr || !named->is_string()) return file_of(table);
+  return file_of(key).parent_path() / named->as_string()->get();
+}
+
+const std::vector<TomlText>& TomlFile::texts() const {
+  return state_->texts;
+}
+
+bool TomlFile::took(std::string_view key) const {
+  const auto is_set = [&](const std::string& set) { return set.starts_with(key); };
+  if (std::ranges::any_of(state_->set_keys, is_set)) return false;
+  const auto below = [&](std::string_view part) {
+    return state_->asked_below(std::string(part), ".") || state_->asked_below(std::string(part), "[");
+  };
+  if (state_->known.contains(key) || below(key)) return true;
+  // A table that was asked for as a whole has all of its keys.
+  for (std::size_t end = key.find_last_of(".["); end != std::string_view::npos; end = key.find_last_of(".[")) {
+    key = key.substr(0, end);
+    if (state_->known.contains(key) && !below(key)) return true;
+  }
+  return false;
 }
 
 void TomlFile::skip(std::string_view key) {
@@ -410,31 +447,32 @@ std::string TomlFile::State::written_for(std::string_view key) const {
 
 /// Where a missing key stands behind a #, as in a template, the error is of that line.
 void TomlFile::State::point_at_comment(std::string_view key, InvalidInput::Parts& parts) const {
-  for (const TomlLine& line : toml_lines(content)) {
-    if (!line.is_comment || line.key != key) continue;
-    parts.where = fmt::format("{}:{}", path.string(), line.number);
-    if (!parts.hint.empty()) parts.hint += ". ";
-    parts.hint += "This line is a comment: write your own value and take the # away";
-    return;
+  for (const TomlText& text : texts) {
+    for (const TomlLine& line : toml_lines(text.content)) {
+      if (!line.is_comment || line.key != key) continue;
+      parts.where = fmt::format("{}:{}", text.path.string(), line.number);
+      if (!parts.hint.empty()) parts.hint += ". ";
+      parts.hint += "This line is a comment: write your own value and take the # away";
+      return;
+    }
   }
 }
 
 void TomlFile::State::check_known(const toml::node& node, const std::string& key) const {
-  const auto asked_below = [&](const char* joint) {
-    const auto first = known.lower_bound(key + joint);
-    return first != known.end() && first->starts_with(key + joint);
-  };
   const toml::table* table = node.as_table();
   const toml::array* list = node.is_array() && is_list_of_tables(*node.as_array()) ? node.as_array() : nullptr;
   // What was asked for as a whole, and not entry by entry, is its asker's.
-  if (known.contains(key) && !(table != nullptr && asked_below(".")) && !(list != nullptr && asked_below("["))) return;
-  if (table != nullptr && (key.empty() || !table->empty() || asked_below("."))) {
+  const bool below_table = table != nullptr && asked_below(key, "."),
+             below_list = list != nullptr && asked_below(key, "[");
+  if (known.contains(key) && !below_table && !below_list) return;
+  if (table != nullptr && (key.empty() || !table->empty() || below_table)) {
     for (const auto& [name, value] : *table) {
+      if (key.empty() && is_of_others(std::string(name.str()))) continue;
       check_known(value, key.empty() ? std::string(name.str()) : key + "." + std::string(name.str()));
     }
   } else if (list != nullptr) {
     for (std::size_t i = 0; i < list->size(); ++i) check_known((*list)[i], fmt::format("{}[{}]", key, i));
-  } else {
+  } else if (!is_shared_key(key)) {
     throw unknown(key);
   }
 }
@@ -445,6 +483,7 @@ std::vector<std::string> TomlFile::done() const {
 }
 
 void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
+  if (is_of_others(key) || (is_shared_key(key) && !known.contains(key))) return;
   if (const toml::table* table = node.as_table()) {
     for (const auto& [name, value] : *table)
       compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);

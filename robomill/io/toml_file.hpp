@@ -22,9 +22,15 @@ struct Field {
   double T::*value;
 };
 
-/// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
-/// fills and the factor between them; the rows it has seen serve to report errors in the file's own words and to reject
-/// unknown keys.
+/// A file of a document, and its content.
+struct TomlText {
+  std::filesystem::path path;
+  std::string content;
+};
+
+/// One TOML document while it is read: a file with those that it includes. Every reading call is one row of the file's
+/// table: its key, the SI member that it fills and the factor between them; the rows it has seen serve to report errors
+/// in the file's own words and to reject unknown keys.
 ///
 /// Keys are full paths: "tool.teeth", "hits[0].file" (tables of an array count from 0 here, from 1 in messages). The
 /// bool readers leave `out` alone and return false where the key is absent; a value of the wrong type throws
@@ -53,7 +59,7 @@ class TomlFile {
   bool text(std::string_view key, std::string& out);
   /// A list of texts; a single text is a list of one.
   bool texts(std::string_view key, std::vector<std::string>& out);
-  /// A path, made relative to the folder of this file.
+  /// A path, made relative to the folder of the file that gives it.
   bool path(std::string_view key, std::filesystem::path& out);
   bool paths(std::string_view key, std::vector<std::filesystem::path>& out);
   /// One of the named values.
@@ -66,6 +72,15 @@ class TomlFile {
     out = *value;
     return true;
   }
+
+  /// The file that gives a key, or the innermost table around it: the document, or one that it includes.
+  [[nodiscard]] std::filesystem::path file_of(std::string_view key) const;
+  /// The file of a part of a job: the one that a key names ("job.lobes"), else the one that gives a table ("lobes").
+  [[nodiscard]] std::filesystem::path file_of_part(std::string_view key, std::string_view table) const;
+  /// The files that were read, the document first.
+  [[nodiscard]] const std::vector<TomlText>& texts() const;
+  /// Whether a value of the files was asked for, or its table, and the source did not set it.
+  [[nodiscard]] bool took(std::string_view key) const;
 
   /// Accepts a key or a whole table unread: it is for another reader of the same file.
   void skip(std::string_view key);
@@ -94,7 +109,8 @@ class TomlFile {
     }
   }
   /// Ends the reading. What is unusual() comes back, so that no reader can leave it out of its notes.
-  /// @throws InvalidInput on a key that no call has read, naming the nearest known one
+  /// @throws InvalidInput on a key that no call has read, naming the nearest known one. A table that readers of other
+  ///     documents know (toml_tables.hpp) may stand there, as may their keys in a table that is read here.
   [[nodiscard]] std::vector<std::string> done() const;
   /// A sentence for each number of the file outside its usual range (io/usual_ranges.hpp), in the order of the file's
   /// keys: "Warning: file:line: key = value unit; is unusual: … is usual. hint".

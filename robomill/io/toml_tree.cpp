@@ -72,7 +72,7 @@ void require_short_keys(std::string_view content, const std::string& where) {
 toml::table parse_toml(std::string_view content, const std::string& where) {
   require_short_keys(content, where);
   try {
-    return toml::parse(content);
+    return toml::parse(content, where);
   } catch (const toml::parse_error& error) {
     throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", where, error.source().begin.line),
                                            .rule = "is no TOML: " + std::string(error.description())});
@@ -95,6 +95,14 @@ const toml::node* find_node(const toml::table& root, std::string_view path) {
     }
   }
   return node;
+}
+
+std::string value_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
+  return {};
 }
 
 bool is_list_of_tables(const toml::array& array) {

@@ -17,7 +17,7 @@ namespace robomill::io {
 /// a level. @throws InvalidInput with the line if a key has very many
 void require_short_keys(std::string_view content, const std::string& where);
 
-/// @param where  names the file in messages
+/// @param where  names the file in messages and in the tree's nodes
 /// @throws InvalidInput with the line if it is no TOML, or has a key of very many parts
 [[nodiscard]] toml::table parse_toml(std::string_view content, const std::string& where);
 
@@ -26,6 +26,9 @@ std::optional<std::size_t> take_index(std::string_view& path);
 
 /// What a path leads to: "hits[0].file", tables of an array from 0; null where nothing is there.
 [[nodiscard]] const toml::node* find_node(const toml::table& root, std::string_view path);
+
+/// A value as the file has it; empty for tables and arrays.
+[[nodiscard]] std::string value_text(const toml::node& node);
 
 [[nodiscard]] bool is_list_of_tables(const toml::array& array);
 

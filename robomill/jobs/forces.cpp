@@ -25,9 +25,10 @@ process::Cut cut_of(const process::ForcesFile& forces, bool with_cell) {
 process::ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
                                  const std::filesystem::path& cell, Progress& progress) {
   using process::ForcesJob;
-  process::ForcesFile file = process::read_forces(forces, program.empty() ? ForcesJob::revolution : ForcesJob::program);
+  const std::filesystem::path along = program.empty() ? process::program_of_job(forces) : program;
+  process::ForcesFile file = process::read_forces(forces, along.empty() ? ForcesJob::revolution : ForcesJob::program);
   if (!cell.empty()) file.cell = cell;
-  return run_forces(file, program, std::nullopt, progress);
+  return run_forces(file, along, std::nullopt, progress);
 }
 
 process::ForcesResult run_forces(const process::ForcesFile& forces, const std::filesystem::path& program,

@@ -33,6 +33,7 @@
 #include "robomill/modal/fit.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/process/files/forces_toml.hpp"
+#include "testing/samples.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
@@ -148,10 +149,10 @@ TEST_F(Init, ABlankTemplateHasNoSampleButChoicesThatAreMarked) {
   for (const Template kind : every) {
     const std::string blank = template_text(kind, false), example = template_text(kind, true);
     const io::TomlSource source("t.toml", blank);
-    for (const Assumption& one : io::sample_values(source)) {
+    for (const Assumption& one : test_support::all_samples(source)) {
       EXPECT_TRUE(one.key.starts_with("smoothing.") || one.key == "lobes.axial_depth_mm") << one.key;
     }
-    EXPECT_GE(io::sample_values(io::TomlSource("t.toml", example)).size(), 2U) << name_in(template_names, kind);
+    EXPECT_GE(test_support::all_samples(io::TomlSource("t.toml", example)).size(), 2U) << name_in(template_names, kind);
     EXPECT_LT(said(blank).size(), said(example).size()) << name_in(template_names, kind);
     EXPECT_EQ(blank.find("#!"), std::string::npos);
     EXPECT_EQ(example.find("#!"), std::string::npos);

@@ -17,6 +17,7 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/files/shop_units.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
+#include "testing/samples.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -148,7 +149,7 @@ TEST_F(Asked, WithoutAnExampleNothingIsMadeUp) {
 TEST_F(Asked, AnAnswerIsNoSample) {
   InitFiles files = begun(Template::lobes);
   const auto samples = [&] {
-    return io::sample_values(io::TomlSource("lobes.toml", files.document(Template::lobes)->text)).size();
+    return test_support::all_samples(io::TomlSource("lobes.toml", files.document(Template::lobes)->text)).size();
   };
   const std::size_t before = samples();
   tell(Template::lobes, files, {"", "", "", "12", "3"});

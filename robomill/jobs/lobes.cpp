@@ -50,6 +50,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   load_dynamics(cut, progress);
   cut.validate();
   for (const std::filesystem::path& plan : jobs_of_cut(job.lobes)) {
+    if (!cut.job.empty()) break;
     if (const std::string text = other_structure_text(plan, cut); !text.empty()) cut.notes.push_back(text);
   }
   cut.options.points = job.points;

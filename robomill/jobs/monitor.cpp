@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
@@ -14,7 +15,6 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/decision/finish.hpp"
-#include "robomill/io/samples.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
@@ -90,8 +90,10 @@ LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Pro
     basis.depth_margin = structure.job.recommend.depth_margin;
     basis.speed_window = structure.job.recommend.speed_window;
     if (!(basis.highest_rad_per_s > 0.0)) {
-      basis.lowest_rad_per_s = cut.options.spindle_speed_rad_per_s[0];
-      basis.highest_rad_per_s = cut.options.spindle_speed_rad_per_s[1];
+      const std::array<double, 2>& chart = cut.options.spindle_speed_rad_per_s;
+      const std::array<double, 2> spindle = decision::spindle_range(structure.job.recommend);
+      basis.lowest_rad_per_s = std::max(chart[0], spindle[0]);
+      basis.highest_rad_per_s = spindle[1] > 0.0 ? std::min(chart[1], spindle[1]) : chart[1];
     }
   } else {
     load_dynamics(cut, progress);
@@ -116,7 +118,7 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
                           .lowest_rad_per_s = file.act.lowest_rad_per_s,
                           .highest_rad_per_s = file.act.highest_rad_per_s,
                           .unfiltered_sample_rate_hz = file.anti_alias_filter ? 0.0 : file.options.sample_rate_hz};
-  if (!file.path.empty()) add_assumed(basis.assumed, io::sample_values(file.path));
+  add_assumed(basis.assumed, file.assumed);
   if (!file.lobes.empty()) {
     const LobesFile lobes = cut_of(file, basis, progress);
     if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;

@@ -79,9 +79,10 @@ RandomCut random_cut(Random& random, int seed) {
   return out;
 }
 
+const std::string chart = "[lobes]\nspindle_speed_rpm = [6000, 12000]\naxial_depth_mm = [0, 4]\ngrid = [21, 12]\n";
+
 std::string lobes_text(const RandomCut& c) {
-  return c.tool + c.cut + c.coefficients + "[dynamics]\n" + c.dynamics +
-         "[lobes]\nspindle_speed_rpm = [6000, 12000]\naxial_depth_mm = [0, 4]\ngrid = [21, 12]\n";
+  return c.tool + c.cut + c.coefficients + "[dynamics]\n" + c.dynamics + chart;
 }
 
 std::string forces_text(const RandomCut& c, const stability::OperatingPoint& at) {
@@ -153,8 +154,8 @@ TEST(OneCut, EveryVerbSaysTheSame) {
     ASSERT_TRUE(plan.recommendation.recommended) << seed << plan.recommendation.reason;
     const decision::Operation& op = *plan.recommendation.recommended;
     const stability::OperatingPoint at{op.spindle_speed_rad_per_s, op.axial_depth_m};
-    const LobesJobResult chart = run_lobes({.lobes = lobes, .points = {at}});
-    const stability::PointResult& point = chart.lobes.points.front();
+    const LobesJobResult of_cut = run_lobes({.lobes = lobes, .points = {at}});
+    const stability::PointResult& point = of_cut.lobes.points.front();
     EXPECT_TRUE(point.stable) << seed;
     if (std::isfinite(point.limit_depth_m)) {
       expect_within(op.limit_depth_m, point.limit_depth_m, seed + ": limit");
@@ -170,6 +171,21 @@ TEST(OneCut, EveryVerbSaysTheSame) {
     expect_within(op.power_w, force.power_w, seed + ": mean power");
     expect_within(op.removal_rate_m3_per_s, force.removal_rate_m3_per_s, seed + ": removal rate");
     expect_one_cut(c, lobes, at, folder, seed);
+
+    // The same tables in one document.
+    const auto whole =
+        folder.file("whole.toml", "[job]\nmodes = \"modes.json\"\n[safety]\nspeed_window = 0\ndepth_margin = 0.4\n" +
+                                      chart + forces_text(c, at));
+    const PlanResult same = run_job(whole, 1);
+    ASSERT_TRUE(same.recommendation.recommended) << seed;
+    EXPECT_EQ(same.recommendation.recommended->axial_depth_m, op.axial_depth_m) << seed;
+    EXPECT_EQ(same.recommendation.recommended->torque_n_m, op.torque_n_m) << seed;
+    const LobesJobResult of_job = run_lobes({.lobes = whole, .points = {at}});
+    EXPECT_EQ(std::isfinite(of_job.lobes.points.front().limit_depth_m), std::isfinite(point.limit_depth_m)) << seed;
+    if (std::isfinite(point.limit_depth_m)) {
+      expect_within(of_job.lobes.points.front().limit_depth_m, point.limit_depth_m, seed + ": limit of the job");
+    }
+    EXPECT_EQ(run_forces(whole, {}, {}).revolution->deflected.force.peak_force_n, force.peak_force_n) << seed;
 
     monitor::MonitorFile monitor;
     monitor.lobes = lobes;

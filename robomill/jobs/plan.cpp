@@ -12,7 +12,6 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/contradictions.hpp"
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
@@ -36,6 +35,11 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 /// What warns among a file's notes, which are not the plan's otherwise.
 void append_warnings(std::vector<std::string> notes, std::vector<std::string>& warnings) {
   append(warnings, io::take_warnings(notes));
+}
+
+/// @throws InvalidInput if a file that the job names is missing: its tables are not in what was read
+void require_there(const std::filesystem::path& part) {
+  static_cast<void>(io::open_file(part));
 }
 
 /// Where prediction and measurement are further apart than this, the lobes are those of another tip.
@@ -141,6 +145,19 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   }
 }
 
+/// What the job's and the cutter's length of the edges say differently.
+void warn_of_edges(const process::ForcesFile& forces, PlanResult& result) {
+  const double edges_m = forces.cutter.cutting_height_m, deepest_m = result.job.recommend.max_axial_depth_m;
+  const bool stated = forces.document->has("tool.cutting_height_mm");
+  constexpr double rounding = 1e-6;
+  if (!stated || !(deepest_m > edges_m * (1.0 + rounding))) return;
+  result.warnings.push_back(
+      fmt::format("tool.max_axial_depth_mm is {:.6g} in {}, and the edges reach {:.6g} mm up in {} "
+                  "(tool.cutting_height_mm): a deeper cut runs the shank into material.",
+                  deepest_m / units::mm, result.job.file.filename().string(), edges_m / units::mm,
+                  forces.path.filename().string()));
+}
+
 /// Whether the spindle can turn the cutter through the cut whose forces were asked for.
 void warn_of_spindle(PlanResult& result) {
   const std::vector<decision::SpindleCapacity>& curve = result.job.recommend.spindle;
@@ -186,7 +203,8 @@ std::optional<decision::SpindleCapacity> capacity_along(const process::ForcesRes
 /// The job's cell, for forces or for what smooths its program; only serial arms have forces.
 std::optional<cell::CellFile> cell_of(const Job& job) {
   if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
-  cell::CellFile cell = cell::read_cell(job.cell, job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
+  require_there(job.cell);
+  cell::CellFile cell = cell::read_cell(job.file, job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
   if (!job.near_deg.empty()) cell::ask_for_posture(cell, job.near_deg);
   return cell;
 }
@@ -208,7 +226,7 @@ void smooth(PlanResult& result, const cell::CellFile& cell, const std::filesyste
     smooth.options.output = folder / "trajectory.csv";
   }
   if (cell.geometry && !result.job.forces.empty()) {
-    smooth.options.cutter = process::read_forces(result.job.forces, process::ForcesJob::program).cutter;
+    smooth.options.cutter = process::read_forces(result.job.file, process::ForcesJob::program).cutter;
   }
   result.programmed.path = run_smooth(smooth, cell, progress);
 }
@@ -288,10 +306,10 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
                     Progress& progress) {
   if (result.job.forces.empty()) return;
   const bool along = !result.job.program.empty();
+  require_there(result.job.forces);
   const process::ForcesFile file =
-      process::read_forces(result.job.forces, along ? process::ForcesJob::program : process::ForcesJob::revolution);
-  if (result.recommends()) append(result.warnings, contradictions(result.cut, file));
-  append(result.warnings, contradictions(result.job, file));
+      process::read_forces(result.job.file, along ? process::ForcesJob::program : process::ForcesJob::revolution);
+  warn_of_edges(file, result);
   if (!result.job.judges_blocks()) {
     result.programmed.forces = run_forces(file, result.job.program, cell, progress);
   } else {
@@ -309,7 +327,8 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
 
 /// lobes.toml, and what a plan asks of it.
 void read_cut(PlanResult& result) {
-  result.cut = read_lobes(result.job.lobes);
+  require_there(result.job.lobes);
+  result.cut = read_lobes(result.job.file);
   append(result.notes, result.cut.notes);
   append(result.warnings, io::take_warnings(result.notes));
   require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "robomill/io/samples.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/process/decide/motion_loads.hpp"
 
@@ -20,7 +19,7 @@ void gather_assumed(PlanResult& result, const cell::Cell* cell) {
   }
   if (result.decision) add_assumed(of_job, result.decision->assumed);
   for (Assumption& one : of_job) one.file = result.job.file.filename().string();
-  add_assumed(result.assumed, io::sample_values(result.job.file));
+  add_assumed(result.assumed, result.job.assumed);
   add_assumed(result.assumed, of_job);
   if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
   const PlannedProgram& shown = result.shown();

@@ -92,30 +92,6 @@ int nodes_for(int before, double old_length, double new_length) {
   return static_cast<int>(std::clamp(std::ceil(before * new_length / old_length), 2.0, most));
 }
 
-/// Speeds that the spindle has and the chart does not are searched too.
-void cover_spindle(PlanResult& result) {
-  const std::array<double, 2> spindle = decision::spindle_range(result.job.recommend);
-  double from = spindle[0];
-  const double to = spindle[1];
-  std::array<double, 2>& chart = result.cut.options.spindle_speed_rad_per_s;
-  const std::array<double, 2> asked = chart;
-  if (from <= 0.0) from = asked[0];
-  const double high = std::max(asked[1], to);
-  // Slow speeds cost most and remove least.
-  constexpr double slowest = 0.1;
-  const double low = std::min(asked[0], std::max(from, slowest * high));
-  if (low >= asked[0] && high <= asked[1]) return;
-  chart = {low, high};
-  result.cut.options.grid[0] = nodes_for(result.cut.options.grid[0], asked[1] - asked[0], high - low);
-  std::string text = fmt::format(
-      "The chart of {} goes from {:.0f} to {:.0f} rpm, the spindle from {:.0f} to {:.0f} rpm: {:.0f} to {:.0f} rpm "
-      "were searched.",
-      result.cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
-      (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
-  if (from < low) text += " Slower ones were not.";
-  result.notes.push_back(text);
-}
-
 /// Whether a cut ends where the chart does, and cutter and spindle would take more.
 bool ends_with_chart(const PlanResult& result) {
   if (!(result.job.recommend.max_axial_depth_m > result.cut.options.axial_depth_m[1])) return false;
@@ -149,6 +125,29 @@ void cover_cutter(PlanResult& result, Progress& progress) {
 
 }  // namespace
 
+void cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend) {
+  const std::array<double, 2> spindle = decision::spindle_range(recommend);
+  double from = spindle[0];
+  const double to = spindle[1];
+  std::array<double, 2>& chart = cut.options.spindle_speed_rad_per_s;
+  const std::array<double, 2> asked = chart;
+  if (from <= 0.0) from = asked[0];
+  const double high = std::max(asked[1], to);
+  // Slow speeds cost most and remove least.
+  constexpr double slowest = 0.1;
+  const double low = std::min(asked[0], std::max(from, slowest * high));
+  if (low >= asked[0] && high <= asked[1]) return;
+  chart = {low, high};
+  cut.options.grid[0] = nodes_for(cut.options.grid[0], asked[1] - asked[0], high - low);
+  std::string text = fmt::format(
+      "The chart of {} goes from {:.0f} to {:.0f} rpm, the spindle from {:.0f} to {:.0f} rpm: {:.0f} to {:.0f} rpm "
+      "were searched.",
+      cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
+      (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
+  if (from < low) text += " Slower ones were not.";
+  cut.notes.push_back(text);
+}
+
 void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress) {
   result.cut.drop_dynamics();  // the job's stand in their place
   load_dynamics(result.cut);
@@ -156,7 +155,10 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
   result.cut.validate();
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
-  cover_spindle(result);
+  const std::size_t notes = result.cut.notes.size();
+  cover_spindle(result.cut, result.job.recommend);
+  result.notes.insert(result.notes.end(), result.cut.notes.begin() + static_cast<std::ptrdiff_t>(notes),
+                      result.cut.notes.end());
   with_words_of(result.cut, [&] {
     find_limits(result, progress);
     cover_cutter(result, progress);

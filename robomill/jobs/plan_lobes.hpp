@@ -6,6 +6,9 @@
 
 namespace robomill::jobs {
 
+/// Speeds that the spindle has and the chart does not are searched too; a note of the cut says so.
+void cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend);
+
 /// Lobes of the job's cut with the modes that were found, the recommendation, and what stands beside it: the band,
 /// pairs of modes, the limit over feed direction, test cuts.
 void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress);

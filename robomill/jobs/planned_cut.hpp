@@ -9,8 +9,8 @@
 
 namespace robomill::jobs {
 
-/// The jobs whose cut a lobes.toml is, by name: the documents beside it whose job.lobes names it, as far as what their
-/// structures come from is there.
+/// The jobs whose cut a document has: itself, where it is a job; else the documents beside it whose job.lobes names it,
+/// as far as what their structures come from is there.
 [[nodiscard]] std::vector<std::filesystem::path> jobs_of_cut(const std::filesystem::path& lobes);
 /// A sentence that the structure of none of several jobs was taken.
 [[nodiscard]] std::string several_jobs_text(const std::vector<std::filesystem::path>& jobs,

@@ -17,6 +17,7 @@
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "testing/support.hpp"
@@ -90,11 +91,13 @@ TEST_F(Planned, TakesStructureRangeAndMarginOfTheJob) {
   take_plan(cut, run_structure(path, 1));
   ASSERT_EQ(cut.problem.dynamics.modes.size(), 2U);
   EXPECT_DOUBLE_EQ(cut.problem.dynamics.modes[0].frequency_hz, 500.0);
-  EXPECT_NEAR(cut.options.spindle_speed_rad_per_s[0] / units::rpm, 6000.0, 1e-9);
+  // The chart's range and the spindle's, as a plan searches them.
+  EXPECT_NEAR(cut.options.spindle_speed_rad_per_s[0] / units::rpm, 5000.0, 1e-9);
   EXPECT_NEAR(cut.options.spindle_speed_rad_per_s[1] / units::rpm, 18000.0, 1e-9);
   const live::AdviceBasis advised = basis(lobes);
   EXPECT_EQ(advised.depth_margin, 0.4);
   EXPECT_EQ(advised.speed_window, 0.05);
+  EXPECT_NEAR(advised.lowest_rad_per_s / units::rpm, 6000.0, 1e-9);
   EXPECT_NEAR(advised.highest_rad_per_s / units::rpm, 18000.0, 1e-9);
   EXPECT_DOUBLE_EQ(advised.modes->modes[0].frequency_hz, 500.0);
   // The chart of the file alone says that it is another structure.
@@ -102,6 +105,51 @@ TEST_F(Planned, TakesStructureRangeAndMarginOfTheJob) {
   ASSERT_FALSE(alone.cut.notes.empty());
   EXPECT_NE(alone.cut.notes.back().find("job.toml plans this cut with the structure of its own measurement"),
             std::string::npos);
+}
+
+// The tables of a job in one file, in files that it includes, or in files that it names: one cut.
+TEST_F(Planned, TheTablesOfAJobStandWhereverTheUserPutsThem) {
+  const std::string spindle = "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n";
+  const auto named = job(500.0, 0.5, spindle);
+  folder_.file("lobes.toml", lobes_text(""));
+  const auto whole = folder_.file("whole.toml", "[job]\nmodes = \"modes.json\"\n" + spindle + lobes_text(""));
+  const auto included =
+      folder_.file("included.toml", "include = \"lobes.toml\"\n[job]\nmodes = \"modes.json\"\n" + spindle);
+  const auto bare = folder_.file("bare.toml", "[job]\n" + spindle + lobes_text("modes = \"modes.json\"\n"));
+  const PlanResult plan = run_job(named, 1);
+  ASSERT_TRUE(plan.recommendation.recommended);
+  const decision::Operation& op = *plan.recommendation.recommended;
+  for (const auto& document : {named, whole, included, bare}) {
+    const PlanResult same = run_job(document, 1);
+    EXPECT_EQ(same.recommendation.recommended->axial_depth_m, op.axial_depth_m) << document;
+    EXPECT_EQ(same.recommendation.recommended->spindle_speed_rad_per_s, op.spindle_speed_rad_per_s) << document;
+    // Its chart and its monitor take the job itself.
+    const stability::OperatingPoint at{op.spindle_speed_rad_per_s, op.axial_depth_m};
+    const LobesJobResult chart = run_lobes({.lobes = document, .points = {at}});
+    EXPECT_NEAR(chart.lobes.points.front().limit_depth_m, op.limit_depth_m, 1e-3 * op.limit_depth_m) << document;
+    const live::AdviceBasis advised = basis(document);
+    ASSERT_EQ(advised.lobes->limit.size(), plan.lobes.limit.size()) << document;
+    for (std::size_t i = 0; i < plan.lobes.limit.size(); ++i) {
+      EXPECT_NEAR(advised.lobes->limit[i].axial_depth_m, plan.lobes.limit[i].axial_depth_m, 1e-8);
+      EXPECT_NEAR(chart.lobes.limit[i].axial_depth_m, plan.lobes.limit[i].axial_depth_m, 1e-8);
+    }
+    EXPECT_NEAR(advised.lowest_rad_per_s / units::rpm, 6000.0, 1e-9) << document;
+  }
+}
+
+// Teeth, modes and lobes of a job's monitor are those of the job.
+TEST_F(Planned, TheMonitorOfAJobIsReadFromTheJob) {
+  static_cast<void>(job(500.0, 0.5));
+  const auto document =
+      folder_.file("whole.toml",
+                   "[job]\nmodes = \"modes.json\"\n[signal]\nsample_rate_hz = 10240\nchannels = [\"ax\"]\n[process]\n"
+                   "spindle_speed_rpm = 9000\n" +
+                       lobes_text(""));
+  const monitor::MonitorFile monitor = monitor::read_monitor(document);
+  EXPECT_EQ(monitor.lobes, document);
+  const live::AdviceBasis advised = read_advice_basis(monitor, Progress::none());
+  EXPECT_EQ(advised.teeth, 3);
+  EXPECT_DOUBLE_EQ(advised.modes->modes[0].frequency_hz, 500.0);
 }
 
 // A blank cut has no structure: a job brings it, alone it is rejected.

@@ -5,8 +5,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cell/posture_choice.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
+#include "robomill/process/files/forces_toml.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/kinematics.hpp"
 
@@ -32,9 +34,17 @@ std::vector<path::Method> others(const cell::CellFile& cell, const robot::Kinema
 }  // namespace
 
 process::SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
-  cell::CellFile cell = cell::read_cell(job.cell, cell::Robots::any);
+  SmoothJob smooth = job;
+  if (io::format_of(job.program) == io::Format::toml) {
+    if (smooth.cell.empty()) smooth.cell = job.program;
+    smooth.program = process::program_of_job(job.program);
+    if (smooth.program.empty()) {
+      throw InvalidInput(job.program.string(), "job.program is missing", "It names the program to smooth");
+    }
+  }
+  cell::CellFile cell = cell::read_cell(smooth.cell, cell::Robots::any);
   if (!job.near_deg.empty()) cell::ask_for_posture(cell, job.near_deg);
-  return run_smooth(job, cell, progress);
+  return run_smooth(smooth, cell, progress);
 }
 
 process::SmoothResult run_smooth(const SmoothJob& job, const cell::CellFile& cell, Progress& progress) {

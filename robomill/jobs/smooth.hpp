@@ -15,7 +15,8 @@ namespace robomill::jobs {
 
 /// A program's file to smooth in a cell with [smoothing].
 struct SmoothJob {
-  std::filesystem::path program, cell;
+  std::filesystem::path program;            ///< or the job (.toml) that names it
+  std::filesystem::path cell;               ///< empty: the job's
   std::optional<path::Method> method = {};  ///< not given: the cell's
   bool compare = false;                     ///< all other methods too, which stand for options.compare
   std::vector<double> near_deg = {};        ///< joints to begin near, of a job that reads its cell; empty: the cell's

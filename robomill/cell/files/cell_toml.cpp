@@ -205,9 +205,9 @@ void read_program_words(io::TomlFile& file, Cell& out) {
 
 CellFile read_cell(const io::TomlSource& source, Robots usable) {
   CellFile out;
-  out.path = source.path;
   out.document = std::make_shared<io::TomlFile>(source);
   io::TomlFile& file = *out.document;
+  out.path = file.file_of_part("job.cell", "robot");
   file.skip("smoothing");
   file.require("robot", "Write [robot] with the arm: model, or dh, or urdf");
   const Kind kind = read_kind(file, usable);
@@ -215,9 +215,8 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   if (kind == Kind::serial) link_frames = read_serial(file, out);
   if (kind == Kind::hybrid) read_hybrid(file, out);
   read_origin(file, out);
-  for (const char* key : {"workpiece.origin_mm", "tool.length_mm"}) {
-    if (file.has(std::string(key).substr(0, std::string(key).find('.')))) file.require(key);
-  }
+  if (file.has("workpiece")) file.require("workpiece.origin_mm");
+  if (file.has("tool") && !file.has("tool.teeth")) file.require("tool.length_mm");  // else [tool] may be the cutter's
   out.origin_given = file.has("workpiece.origin_mm");
   out.length_given = file.has("tool.length_mm");
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
@@ -229,7 +228,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
     out.geometry = robot::read_geometry(file, out.cell, out.mount(), link_frames, out.notes);
   }
   std::ranges::move(file.done(), std::back_inserter(out.notes));
-  add_assumed(out.assumed, io::sample_values(source));
+  add_assumed(out.assumed, io::sample_values(file));
   for (const std::string& text : robot::unusual_masses(out.cell.arm))
     out.notes.push_back(fmt::format("{}{}: {}", io::warning_label, out.path.string(), text));
   if (out.hybrid) {

@@ -336,7 +336,7 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   read_search(file, out.search);
   add_defaults(file, reading, out);
   std::ranges::move(file.done(), std::back_inserter(out.notes));
-  add_assumed(out.assumed, io::sample_values(source));
+  add_assumed(out.assumed, io::sample_values(file));
   if (!reading.joint_sought) choose_lines(file, lines, out);
   about(file, out.receptances.empty() ? source.path : out.receptances, [&] { out.assembly.validate(); });
   return out;

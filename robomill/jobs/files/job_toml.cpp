@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/io/records.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
@@ -20,19 +22,32 @@
 namespace robomill::jobs {
 namespace {
 
+/// A part of the job in a file of its own, or in the job itself.
+void read_part(io::TomlFile& file, const char* key, bool held, const Job& job, std::filesystem::path& part) {
+  if (!file.path(key, part) && held) part = job.file;
+}
+
+/// The structure that [dynamics] names, where the job names no other.
+void read_dynamics(io::TomlFile& file, Job& job) {
+  file.path("dynamics.modes", job.modes);
+  std::filesystem::path frf;
+  if (file.path("dynamics.frf", frf)) job.frf.push_back(std::move(frf));
+}
+
 void read_sources(io::TomlFile& file, Job& job) {
   file.text("job.title", job.title);
   file.path("job.hits", job.hits);
   file.path("job.modes", job.modes);
-  file.path("job.lobes", job.lobes);
+  read_part(file, "job.lobes", file.has("lobes"), job, job.lobes);
   file.path("job.assembly", job.assembly);
   if (file.path("job.joint", job.joint) && job.assembly.empty()) {
     throw file.reject("job.joint", "goes with job.assembly", "It stands in place of the assembly's [joint]");
   }
-  file.path("job.forces", job.forces);
-  for (const auto& [key, path] : {std::pair{"job.cell", &job.cell}, std::pair{"job.program", &job.program}}) {
-    file.path(key, *path);
-  }
+  read_part(file, "job.forces", file.has("forces") || file.has("stock"), job, job.forces);
+  constexpr std::array arms = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
+  const bool holds_arm = std::ranges::any_of(arms, [&](const char* key) { return file.has(key); });
+  read_part(file, "job.cell", holds_arm, job, job.cell);
+  file.path("job.program", job.program);
   if (job.forces.empty() && job.cell.empty() != job.program.empty()) {
     throw file.reject(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
                       "A program and a cell with [smoothing] make a trajectory");
@@ -49,6 +64,7 @@ void read_sources(io::TomlFile& file, Job& job) {
   modal::ModalModel none;
   job.directions = process::read_missing_directions(file, "job", none);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
+  if (!job.has_structure()) read_dynamics(file, job);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1);
   if (sources > 1 || (sources == 0 && !job.judges_blocks())) {
@@ -145,6 +161,7 @@ Job read_job(const io::TomlSource& source) {
     job.notes = cuts.done();
   }
   std::ranges::move(file.done(), std::back_inserter(job.notes));
+  job.assumed = io::sample_values(file);
   file.locate([&] { job.validate(); });
   return job;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/decision/finish.hpp"
 #include "robomill/decision/recommend.hpp"
@@ -15,11 +16,13 @@
 
 namespace robomill::jobs {
 
-/// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
-/// is given; a job that judges blocks may have none of them, nor lobes.
+/// job.toml. Paths are resolved; an empty one is absent. lobes, forces and cell are the job itself where it holds their
+/// tables. Exactly one of hits, frf, modes and assembly is given, or [dynamics] gives modes or frf; a job that judges
+/// blocks may have none of them, nor lobes.
 struct Job {
-  std::filesystem::path file = {};      ///< this one
-  std::vector<std::string> notes = {};  ///< sentences for the user
+  std::filesystem::path file = {};       ///< this one
+  std::vector<std::string> notes = {};   ///< sentences for the user
+  std::vector<Assumption> assumed = {};  ///< sample values
   std::string title = {};
   std::filesystem::path hits = {}, modes = {}, lobes = {};
   std::filesystem::path assembly = {};  ///< whose tip is predicted …

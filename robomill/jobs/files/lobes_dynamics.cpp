@@ -11,6 +11,7 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/planned_cut.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/process/files/cut_fields.hpp"
@@ -53,6 +54,9 @@ void load_posture(LobesFile& file, Progress& progress) {
 }  // namespace
 
 void load_dynamics(LobesFile& file, Progress& progress) {
+  if (!file.job.empty() && !file.dropped_dynamics) {
+    return take_plan(file, run_structure(file.job, default_seed, progress));
+  }
   if (!file.cell.empty()) load_posture(file, progress);
   if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes, file.notes);
   if (!file.workpiece_modes.empty()) {

@@ -315,9 +315,14 @@ void read_posture(io::TomlFile& file, LobesFile& out) {
   }
 }
 
+/// What a job measures or predicts the structure from.
+constexpr const char* structure_keys[] = {"job.hits", "job.frf", "job.modes", "job.assembly"};
+
 LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
-  out.path = path;
+  out.path = file.file_of_part("job.lobes", "lobes");
+  const bool gives_structure = std::ranges::any_of(structure_keys, [&](const char* key) { return file.has(key); });
+  if (gives_structure) out.job = path;
   cutting::Cutter cutter;
   process::read_cutter(file, cutter);
   out.problem.milling.tool = cutter.mill;
@@ -416,7 +421,7 @@ LobesFile read_lobes(const io::TomlSource& source) {
   const auto document = std::make_shared<io::TomlFile>(source);
   LobesFile out = read(*document, source.path);
   out.document = document;
-  add_assumed(out.assumed, io::sample_values(source));
+  add_assumed(out.assumed, io::sample_values(*document));
   return out;
 }
 

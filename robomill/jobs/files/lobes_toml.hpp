@@ -27,6 +27,7 @@ namespace robomill::jobs {
 /// a cell and one posture of it.
 struct LobesFile {
   std::filesystem::path path;
+  std::filesystem::path job = {};            ///< the document, where it is a job that gives the structure; else empty
   stability::LobesProblem problem;           ///< dynamics is empty unless modes stand in the file itself
   stability::LobesOptions options;           ///< without points
   std::filesystem::path modes = {};          ///< dynamics.modes, resolved; empty where absent

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <system_error>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "robomill/io/usual_ranges.hpp"
+#include "robomill/jobs/plan_lobes.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -29,15 +29,20 @@ bool is_measured(const Job& job) {
          std::ranges::all_of(sources, [&](const fs::path& path) { return fs::exists(path, error); });
 }
 
-/// Whether a document is a job that measures or predicts a structure and names the cut.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return a.lexically_normal() == b.lexically_normal() || fs::equivalent(a, b, error);
+}
+
+/// Whether a document is a job that measures or predicts a structure, and names the cut or is it.
 bool plans(const fs::path& document, const fs::path& lobes) {
   try {
     const std::string text = io::read_file(document, largest_job_bytes);
-    if (text.find("lobes") == std::string::npos || !io::setting_of(text, "job.lobes")) return false;
-    const Job job = read_job(io::TomlSource(document, text));
-    std::error_code error;
-    return is_measured(job) &&
-           (job.lobes.lexically_normal() == lobes.lexically_normal() || fs::equivalent(job.lobes, lobes, error));
+    if (text.find("job") == std::string::npos) return false;
+    const io::TomlSource source(document, text);
+    if (!io::TomlFile(source).has("job")) return false;
+    const Job job = read_job(source);
+    return is_measured(job) && (is_same(document, lobes) || is_same(job.lobes, lobes));
   } catch (const InvalidInput&) {
     return false;  // another document, or a job that cannot be planned
   }
@@ -46,6 +51,7 @@ bool plans(const fs::path& document, const fs::path& lobes) {
 }  // namespace
 
 std::vector<fs::path> jobs_of_cut(const fs::path& lobes) {
+  if (plans(lobes, lobes)) return {lobes};
   const fs::path folder = lobes.parent_path().empty() ? fs::path(".") : lobes.parent_path();
   std::vector<fs::path> out;
   std::error_code error;
@@ -69,11 +75,7 @@ std::string several_jobs_text(const std::vector<fs::path>& jobs, const fs::path&
 
 std::string other_structure_text(const fs::path& job, const LobesFile& cut) {
   const Job plan = read_job(io::TomlSource(job, io::read_file(job, largest_job_bytes)));
-  std::error_code error;
-  const bool same =
-      !plan.modes.empty() && !cut.modes.empty() &&
-      (plan.modes.lexically_normal() == cut.modes.lexically_normal() || fs::equivalent(plan.modes, cut.modes, error));
-  if (same) return {};
+  if (!plan.modes.empty() && !cut.modes.empty() && is_same(plan.modes, cut.modes)) return {};
   return fmt::format("{} plans this cut with the structure {}, not with [dynamics] of {}.", job.filename().string(),
                      plan.assembly.empty() ? "of its own measurement" : "that its assembly predicts",
                      cut.path.filename().string());
@@ -83,11 +85,7 @@ void take_plan(LobesFile& cut, const PlanResult& structure) {
   cut.drop_dynamics();
   load_dynamics(cut);
   cut.problem.dynamics = structure.model;
-  std::array<double, 2>& range = cut.options.spindle_speed_rad_per_s;
-  const std::array<double, 2> spindle = decision::spindle_range(structure.job.recommend);
-  const double low = spindle[0] > 0.0 ? spindle[0] : range[0];
-  const double high = spindle[1] > 0.0 ? spindle[1] : range[1];
-  if (high > low) range = {low, high};
+  cover_spindle(cut, structure.job.recommend);
   add_assumed(cut.assumed, structure.assumed);
   for (const std::string& text : structure.warnings) {
     cut.notes.push_back(fmt::format("{}{}", io::warning_label, text));

@@ -350,7 +350,7 @@ HitsFile read_hits(const io::TomlSource& source) {
     out.hits.push_back(read_hit(file, i, out.options.response, sensors, out.notes));
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   out.assumed = assumed_of(file, out.options.response, source.path);
-  add_assumed(out.assumed, io::sample_values(source));
+  add_assumed(out.assumed, io::sample_values(file));
   return out;
 }
 

@@ -201,7 +201,7 @@ MonitorFile read_monitor(const io::TomlSource& source) {
   read_signal(file, out);
   read_process(file, out);
   file.path("process.modes", out.modes);
-  file.path("process.lobes", out.lobes);
+  if (!file.path("process.lobes", out.lobes) && file.has("lobes")) out.lobes = source.path;
   read_detector(file, out);
   if (file.number("signal.timeout_s", "timeout_s", 1.0, out.timeout_s) &&
       !(out.timeout_s > 0.0 && out.timeout_s <= 3600.0)) {
@@ -211,6 +211,7 @@ MonitorFile read_monitor(const io::TomlSource& source) {
   read_mqtt(file, out.mqtt);
   read_outputs(file, out);
   out.notes = file.done();
+  out.assumed = io::sample_values(file);
   check_options(file, out);
   return out;
 }

@@ -64,7 +64,7 @@ struct MonitorFile {
   /// Whether nothing above half the sample rate was sampled; false: not stated, and lines may be folded.
   bool anti_alias_filter = false;
   std::filesystem::path modes = {};  ///< process.modes; empty: none
-  std::filesystem::path lobes = {};  ///< process.lobes; empty: none
+  std::filesystem::path lobes = {};  ///< process.lobes, or the document itself where it holds the cut; empty: none
   double timeout_s = 1.0;            ///< without samples for so long, the state is blind; > 0
   ActSettings act = {};
   MqttSettings mqtt = {};
@@ -73,6 +73,7 @@ struct MonitorFile {
   std::filesystem::path recording_folder = {};  ///< empty: alarms are not recorded
   double recording_s = 60.0;                    ///< before each alarm
   std::vector<std::string> notes = {};          ///< sentences for the user
+  std::vector<Assumption> assumed = {};         ///< sample values
 };
 
 /// Everything but the sample rate, where it is missing, is checked.

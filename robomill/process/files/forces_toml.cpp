@@ -67,9 +67,15 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   }
 }
 
-void read_robot(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
-  if (!file.has("robot")) return;
-  file.path("robot.cell", out.cell);
+/// @param document  whose [robot] may be the arm itself
+void read_robot(io::TomlFile& file, const std::filesystem::path& document, ForcesJob job, ForcesFile& out) {
+  constexpr std::array arms = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
+  const bool alone = job == ForcesJob::revolution;
+  const bool holds_arm = std::ranges::any_of(arms, [&](const char* key) { return file.has(key); });
+  const bool has_cell = holds_arm || file.has("job.cell");
+  if (!file.has("robot") && !has_cell) return;
+  if (alone && has_cell && !file.has("robot.joints_deg")) return;  // no posture to cut in
+  if (!file.path("robot.cell", out.cell) && !file.path("job.cell", out.cell) && holds_arm) out.cell = document;
   file.numbers("robot.joints_deg", "joints_rad", units::deg, out.joints_rad);
   std::vector<double> direction;
   if (file.numbers("robot.feed_direction", "feed_direction", 1.0, direction)) {
@@ -79,8 +85,8 @@ void read_robot(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
     out.feed_direction.normalize();
   }
   file.boolean("robot.vibration", out.robot_vibrates);
-  if (job == ForcesJob::program) return;
-  file.require("robot.cell", "The file that describes the robot");
+  if (!alone) return;
+  if (!has_cell) file.require("robot.cell", "The file that describes the robot");
   file.require("robot.joints_deg", "The posture in which it cuts");
 }
 
@@ -169,7 +175,7 @@ void read_coefficients(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
 
 ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob job) {
   ForcesFile out;
-  out.path = path;
+  out.path = file.file_of_part("job.forces", "cut");
   out.job = job;
   file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
   read_cutter(file, out.cutter);
@@ -199,7 +205,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
       static_cast<void>(cutting::cutting_force(out.cutter, engagement, out.coefficients, out.motion, out.force));
     });
   }
-  read_robot(file, job, out);
+  read_robot(file, path, job, out);
   modal::MissingDirections said;
   const auto structure = [&](const std::string& table, modal::ModalModel& model) {
     std::filesystem::path modes, frf;
@@ -229,11 +235,18 @@ InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   return InvalidInput(std::move(parts));
 }
 
+std::filesystem::path program_of_job(const io::TomlSource& source) {
+  io::TomlFile file(source);
+  std::filesystem::path program;
+  file.path("job.program", program);
+  return program;
+}
+
 ForcesFile read_forces(const io::TomlSource& source, ForcesJob job) {
   const auto document = std::make_shared<io::TomlFile>(source);
   ForcesFile out = read(*document, source.path, job);
   out.document = document;
-  add_assumed(out.assumed, io::sample_values(source));
+  add_assumed(out.assumed, io::sample_values(*document));
   return out;
 }
 

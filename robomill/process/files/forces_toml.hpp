@@ -23,7 +23,7 @@ enum class ForcesJob {
 
 /// forces.toml: a cut, and the document that it was read from.
 struct ForcesFile : Cut {
-  std::filesystem::path cell = {};  ///< robot.cell, resolved; empty where absent
+  std::filesystem::path cell = {};  ///< robot.cell or job.cell, or the document where [robot] is the arm; else empty
   /// Calls f; an InvalidInput about a member that this file gave comes out in its words.
   template <class F>
   auto located(F&& f) const {
@@ -37,6 +37,9 @@ struct ForcesFile : Cut {
   ForcesJob job = ForcesJob::revolution;              ///< that it was read for
   std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 };
+
+/// The program that a document of a job names; empty: none.
+[[nodiscard]] std::filesystem::path program_of_job(const io::TomlSource& source);
 
 /// The files of modes and coefficients that it names are read too.
 /// @throws InvalidInput with file, line, key and value

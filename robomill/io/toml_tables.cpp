@@ -1,0 +1,57 @@
+#include "robomill/io/toml_tables.hpp"
+
+#include <algorithm>
+
+namespace robomill::io {
+namespace {
+
+constexpr std::string_view tables[] = {
+    // hits and their records
+    "acquisition", "hits",
+    // the cut
+    "tool", "cut", "coefficients", "process_damping", "speed_variation", "dynamics", "workpiece_dynamics",
+    // its chart, its forces
+    "lobes", "uncertainty", "surface_error", "stock", "forces", "force_on",
+    // the robot's cell
+    "robot", "workpiece", "geometry", "smoothing", "program", "postures",
+    // the job
+    "job", "spindle", "safety", "finishing", "decide", "cuts",
+    // the monitor
+    "signal", "process", "detector", "act", "mqtt", "metrics", "recording"};
+
+/// What several readers know a part of. A * ends the beginning of a key.
+constexpr std::string_view shared_keys[] = {
+    // the cutter, its edges' length, and what it is to the robot
+    "tool.kind", "tool.teeth", "tool.diameter_mm", "tool.helix_deg", "tool.pitch_deg", "tool.runout_um",
+    "tool.runout_angle_deg", "tool.cutting_height_mm", "tool.corner_*", "tool.bottom_angle_deg", "tool.side_angle_deg",
+    "tool.point_angle_deg", "tool.max_axial_depth_mm", "tool.length_mm", "tool.mass_kg", "tool.center_mm",
+    "tool.number", "tool.load_number", "tool.name", "tool.mount_*",
+    // a chart's cut, a cut whose forces are asked for, a program's
+    "cut.kind", "cut.direction", "cut.radial_depth_mm", "cut.stepover_mm", "cut.axial_depth_mm", "cut.entry_deg",
+    "cut.exit_deg", "cut.feed_per_tooth_mm", "cut.feed_per_revolution_mm", "cut.feed_direction_deg",
+    "cut.spindle_speed_rpm", "cut.lead_deg", "cut.tilt_deg", "cut.surface_radius_*", "cut.force_on",
+    // a structure, or a posture of a cell
+    "dynamics.cell", "dynamics.joints_deg", "dynamics.axes", "dynamics.keep_modes",
+    // an arm, and how a cut of one revolution stands on it
+    "robot.kind", "robot.model", "robot.urdf*", "robot.dh*", "robot.links*", "robot.joint_*", "robot.base_*",
+    "robot.platform_*", "robot.start_joints_deg", "robot.gamma_deg", "robot.description", "robot.source", "robot.notes",
+    "robot.assumed*", "robot.cell", "robot.joints_deg", "robot.feed_direction", "robot.vibration",
+    // what the spindle can do, and how a controller switches it
+    "spindle.min_speed_rpm", "spindle.max_speed_rpm", "spindle.curve*", "spindle.output", "spindle.coolant_output",
+    "spindle.spin_up_s"};
+
+bool names(std::string_view pattern, std::string_view key) {
+  return pattern.ends_with('*') ? key.starts_with(pattern.substr(0, pattern.size() - 1)) : key == pattern;
+}
+
+}  // namespace
+
+bool is_known_table(std::string_view name) {
+  return std::ranges::find(tables, name) != std::end(tables);
+}
+
+bool is_shared_key(std::string_view key) {
+  return std::ranges::any_of(shared_keys, [&](std::string_view pattern) { return names(pattern, key); });
+}
+
+}  // namespace robomill::io
