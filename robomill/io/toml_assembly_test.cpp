@@ -59,18 +59,21 @@ TEST(TomlAssembly, ReadsEachFileOnce) {
 // The same value twice is one value; 3 and 3.0 are.
 TEST(TomlAssembly, OneKeyHasOneValue) {
   const Folder folder;
-  folder.file("lobes.toml", "[tool]\nteeth = 3\npitch_deg = [120, 120.0, 120]\nkind = \"flat-end\"\n[[cuts]]\nfile = \"a\"\n");
+  folder.file("lobes.toml",
+              "[tool]\nteeth = 3\npitch_deg = [120, 120.0, 120]\nkind = \"flat-end\"\n[[cuts]]\nfile = \"a\"\n");
   const auto with = [&](const std::string& more) {
     return folder.file("job.toml", "[job]\nlobes = \"lobes.toml\"\n" + more);
   };
-  TomlFile same(with("[tool]\nteeth = 3.0\npitch_deg = [120, 120, 120]\nkind = \"flat-end\"\n[[cuts]]\nfile = \"a\"\n"));
+  TomlFile same(
+      with("[tool]\nteeth = 3.0\npitch_deg = [120, 120, 120]\nkind = \"flat-end\"\n[[cuts]]\nfile = \"a\"\n"));
   EXPECT_EQ(integer(same, "tool.teeth"), 3);
   const auto rejected = [&](const std::string& more) {
     const auto path = with(more);
     return rejection([&] { TomlFile file(path); });
   };
   const std::string teeth = rejected("[tool]\nteeth = 4\n");
-  EXPECT_NE(teeth.find("lobes.toml:2: tool.teeth = 3; must have one value in what is read together; "), std::string::npos);
+  EXPECT_NE(teeth.find("lobes.toml:2: tool.teeth = 3; must have one value in what is read together; "),
+            std::string::npos);
   EXPECT_NE(teeth.find("job.toml:4 has 4"), std::string::npos) << "both lines: " << teeth;
   for (const char* more : {"[tool]\npitch_deg = [100, 120, 140]\n", "[tool]\npitch_deg = 120\n", "[tool]\nkind = 3\n",
                            "[tool]\nkind = \"ball-end\"\n", "[[cuts]]\nfile = \"b\"\n", "tool = \"em12\"\n"}) {

@@ -35,6 +35,7 @@ struct NewFile {
   std::filesystem::path path = {};
   std::string text = {};
   std::optional<Template> kind = {};  ///< nothing: a record
+  bool holds_cut = false;             ///< a job with the tables of lobes.toml
 };
 
 /// Files to begin with, not written yet.
@@ -46,14 +47,14 @@ struct InitFiles {
   bool example = false;                          ///< as asked for
   char unmeasured = 0;                           ///< 'x' or 'y' of a job whose hits leave that direction out; 0: none
 
-  /// The document of a kind among `files`, or null.
+  /// The document of a kind among `files`, of lobes.toml also the job that has its tables; or null.
   [[nodiscard]] ROBOMILL_API NewFile* document(Template kind);
 };
 
 /// Makes the files. Where records of hits lie in the folder, hits.toml names them, with guesses of their columns and
 /// directions that are marked as such (modal::guess_hit); what looks like a record and is not read is named in the
-/// notes. An example names a record that is made up beside it. A job brings hits.toml and lobes.toml along, unless they
-/// are there.
+/// notes. An example names a record that is made up beside it. A job brings hits.toml along, unless it is there, and
+/// contains the cut, unless a lobes.toml is there.
 /// @throws InvalidInput if a name does not end in .toml, a robot is not known, or the folder of data cannot be read
 [[nodiscard]] ROBOMILL_API InitFiles init_files(const InitOptions& options);
 

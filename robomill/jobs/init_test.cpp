@@ -336,13 +336,15 @@ TEST_F(Init, OverwritesNothing) {
 
 TEST_F(Init, AJobBringsWhatItNames) {
   const InitFiles files = made({.kind = Template::job, .example = true});
-  for (const char* name : {"job.toml", "hits.toml", "lobes.toml", "example_hit_x.csv"}) {
+  for (const char* name : {"job.toml", "hits.toml", "example_hit_x.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(at(name))) << name;
   }
-  EXPECT_EQ(files.files.size(), 4U);
+  EXPECT_EQ(files.files.size(), 3U);
   EXPECT_EQ(files.next, "plan " + at("job.toml").string() + " -o out/");
   const Job job = read_job(at("job.toml"));
   EXPECT_EQ(job.hits, at("hits.toml"));
+  EXPECT_EQ(job.lobes, at("job.toml")) << "the job contains the cut";
+  EXPECT_EQ(read_lobes(at("job.toml")).problem.milling.tool.teeth, 3);
   EXPECT_TRUE(job.directions.equal);
 }
 
@@ -352,6 +354,8 @@ TEST_F(Init, AJobKeepsWhatIsThere) {
   const InitFiles files = made({.kind = Template::job});
   EXPECT_EQ(files.files.size(), 1U);
   EXPECT_EQ(files.kept, (std::vector<std::filesystem::path>{at("hits.toml"), at("lobes.toml")}));
+  EXPECT_EQ(read_job(at("job.toml")).lobes, at("lobes.toml"));
+  EXPECT_EQ(slurp(at("job.toml")).find("[cut]"), std::string::npos);
 }
 
 /// A record of a hit in some columns.

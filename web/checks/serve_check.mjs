@@ -134,8 +134,10 @@ async function check(browser, { program, folder, shots, wanted }) {
 /** A folder as somebody has it who begins. */
 function begin(program, folder) {
   mkdirSync(folder);
-  const { status, stderr } = spawnSync(program, ['init', 'job', '--example', '-o', join(folder, 'job.toml')], { encoding: 'utf8' });
-  if (status !== 0) throw new Error(`${program} init ended with ${status}: ${stderr}`);
+  for (const kind of ['lobes', 'job']) { // a cut in a file of its own, and the job that names it
+    const { status, stderr } = spawnSync(program, ['init', kind, '--example', '-o', join(folder, `${kind}.toml`)], { encoding: 'utf8' });
+    if (status !== 0) throw new Error(`${program} init ended with ${status}: ${stderr}`);
+  }
 }
 
 /** The tasks that are asked for, all where none is. */

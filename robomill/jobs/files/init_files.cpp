@@ -186,14 +186,11 @@ void add_job(const InitOptions& options, const fs::path& path, InitFiles& out) {
   } else {
     add_hits(options, hits, beside, measured);
   }
-  job.text = job_document(measured, options.example);
+  const bool cut_beside = is_there(lobes);
+  job.text = job_document(measured, cut_beside, options.example);
+  job.holds_cut = !cut_beside;
   out.unmeasured = unmeasured_axis(measured);
-  if (is_there(lobes)) {
-    out.kept.push_back(lobes);
-  } else {
-    out.files.push_back(
-        {.path = lobes, .text = template_text(Template::lobes, options.example), .kind = Template::lobes});
-  }
+  if (cut_beside) out.kept.push_back(lobes);
   std::ranges::move(beside.files, std::back_inserter(out.files));
   std::ranges::move(beside.kept, std::back_inserter(out.kept));
   out.notes = std::move(beside.notes);
@@ -223,7 +220,8 @@ std::string command_for(Template kind, const fs::path& path) {
 }  // namespace
 
 NewFile* InitFiles::document(Template kind) {
-  const auto found = std::ranges::find(files, std::optional(kind), &NewFile::kind);
+  const auto found = std::ranges::find_if(
+      files, [&](const NewFile& file) { return file.kind == kind || (kind == Template::lobes && file.holds_cut); });
   return found != files.end() ? &*found : nullptr;
 }
 

@@ -245,8 +245,11 @@ char unmeasured_axis(const MeasuredAxes& measured) {
   return is_known(measured, 'x') ? 'y' : 'x';
 }
 
-std::string job_document(const MeasuredAxes& measured, bool example) {
-  const std::string text(raw_template(Template::job));
+std::string job_document(const MeasuredAxes& measured, bool cut_beside, bool example) {
+  const std::string_view raw = raw_template(Template::job);
+  const std::string text =
+      cut_beside ? with_remark(without_tables(raw), "job.lobes", "\"lobes.toml\"", "the cut, which was there before")
+                 : with_tables(raw, raw_template(Template::lobes));
   const char other = unmeasured_axis(measured);
   if (other == 0) return rendered(commented_out(text, "job.equal_directions"), example);
   const char axis = other == 'y' ? 'x' : 'y';

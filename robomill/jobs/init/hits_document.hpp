@@ -43,7 +43,8 @@ struct MeasuredAxes {
 [[nodiscard]] char unmeasured_axis(const MeasuredAxes& measured);
 
 /// job.toml, which asks what a direction is taken for that was not measured.
-[[nodiscard]] std::string job_document(const MeasuredAxes& measured, bool example);
+/// @param cut_beside  a lobes.toml is there: the job names it, and does not contain the cut
+[[nodiscard]] std::string job_document(const MeasuredAxes& measured, bool cut_beside, bool example);
 
 /// cell.toml with an arm of cell::known_arms(); of workpiece and tool what data/cells has stands where the template
 /// shows its own. Empty: the template's arm.

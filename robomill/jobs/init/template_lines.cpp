@@ -43,7 +43,53 @@ std::string rendered_line(std::string_view line, bool example) {
   return with(std::string(setting), fmt::format("{}{}{}", sample, remark.empty() ? "" : ": ", remark));
 }
 
+constexpr std::string_view table_of = "#+ ";
+
+/// Calls f with each line, without its end.
+template <class F>
+void each_line(std::string_view text, const F& f) {
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    f(line);
+  }
+}
+
+/// The lines of a table up to the first that is empty.
+std::string table_lines(std::string_view raw, std::string_view header, bool with_header) {
+  std::string out;
+  bool inside = false;
+  each_line(raw, [&](std::string_view line) {
+    const bool begins = line.starts_with(header);
+    if (begins || line.empty()) inside = begins;
+    if (inside && (!begins || with_header)) out += fmt::format("{}\n", line);
+  });
+  return out;
+}
+
 }  // namespace
+
+std::string with_tables(std::string_view raw, std::string_view other) {
+  std::string out;
+  each_line(raw, [&](std::string_view line) {
+    if (!line.starts_with(table_of)) {
+      out += fmt::format("{}\n", line);
+    } else if (const std::string_view table = line.substr(table_of.size()); table.starts_with('[')) {
+      out += table_lines(other, table, true) + "\n";
+    } else {
+      out += table_lines(other, fmt::format("[{}]", table), false);
+    }
+  });
+  return out;
+}
+
+std::string without_tables(std::string_view raw) {
+  std::string out;
+  each_line(raw, [&](std::string_view line) {
+    if (!line.starts_with(table_of)) out += fmt::format("{}\n", line);
+  });
+  return out;
+}
 
 std::string template_line(std::string_view key, std::string_view value, std::string_view remark,
                           std::string_view mark) {
@@ -54,12 +100,7 @@ std::string template_line(std::string_view key, std::string_view value, std::str
 
 std::string rendered(std::string_view raw, bool example) {
   std::string out;
-  while (!raw.empty()) {
-    const std::string_view line = raw.substr(0, raw.find('\n'));
-    raw.remove_prefix(std::min(line.size() + 1, raw.size()));
-    out += rendered_line(line, example);
-    out += '\n';
-  }
+  each_line(raw, [&](std::string_view line) { out += rendered_line(line, example) + "\n"; });
   return out;
 }
 

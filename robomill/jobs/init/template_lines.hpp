@@ -14,6 +14,12 @@ namespace robomill::jobs {
 /// "#?" stand behind a #.
 [[nodiscard]] std::string rendered(std::string_view raw, bool example);
 
+/// A raw document whose lines "#+ tool" and "#+ [cut]" are replaced by tables of another one: by the keys of the first,
+/// by the second as a whole.
+[[nodiscard]] std::string with_tables(std::string_view raw, std::string_view other);
+/// The same without these lines.
+[[nodiscard]] std::string without_tables(std::string_view raw);
+
 /// A line of a template: `key = value`, and its remark where the others have theirs.
 /// @param mark  "#", or that of a raw document
 [[nodiscard]] std::string template_line(std::string_view key, std::string_view value, std::string_view remark,

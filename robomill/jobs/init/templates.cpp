@@ -41,6 +41,7 @@ std::string_view raw_template(Template kind) {
 }
 
 std::string template_text(Template kind, bool example) {
+  if (kind == Template::job) return rendered(with_tables(raw_template(kind), raw_template(Template::lobes)), example);
   return rendered(raw_template(kind), example);
 }
 

@@ -30,7 +30,7 @@ function Actions({ file, verbs, describe }: FilesProps & { file: FileEntry }) {
       {name}
     </a>
   );
-  if (kind === 'lobes') links.push(link(href('lobes', path), 'Lobes'));
+  if (kind === 'lobes' || kind === 'job') links.push(link(href('lobes', path), 'Lobes'));
   if (kind === 'hits') links.push(link(href('tap', path), 'Tap test'));
   if (kind === 'monitor') links.push(link(href('monitor', path), 'Monitor'));
   if (isEditable(path)) links.push(link(href('job', path), runs.length > 0 ? 'Edit and run' : 'Edit'));

@@ -105,7 +105,7 @@ function EditView({ path }: { path: string }) {
             Save
           </Button>
           <span class="muted">{edited.dirty ? 'Not saved yet' : edited.text === null ? '' : 'Saved'}</span>
-          {kind === 'lobes' && <a href={href('lobes', path)}>Live lobes</a>}
+          {(kind === 'lobes' || kind === 'job') && <a href={href('lobes', path)}>Live lobes</a>}
           {kind === 'hits' && <a href={href('tap', path)}>Tap test with it</a>}
         </div>
       </Panel>

@@ -215,14 +215,16 @@ function LobesOf({ path }: { path: string }) {
 
 /** Without a file: which one. */
 export function LobesView({ path }: { path: string }) {
-  const files = (useServe().folder?.files ?? []).filter(({ kind }) => kind === 'lobes');
+  const all = useServe().folder?.files ?? [];
+  const cuts = all.filter(({ kind }) => kind === 'lobes');
+  const files = cuts.length > 0 ? cuts : all.filter(({ kind }) => kind === 'job'); // which contain the cut
   const chosen = path === '' && files.length === 1 ? files[0]!.path : path;
   if (chosen !== '') return <LobesOf key={chosen} path={chosen} />;
   return (
     <View heading="Lobes" lead="How deep the cutter may go at each spindle speed before chatter starts, while the sliders move.">
       {files.length === 0 ? (
         <p class="notice">
-          The folder has no lobes.toml. <code>robomill init lobes -o lobes.toml</code> writes one to fill in, with <code>--example</code> one that runs.
+          The folder has no job. <code>robomill init job -o job.toml</code> writes one to fill in, with <code>--example</code> one that runs.
         </p>
       ) : (
         <ul>
