@@ -120,6 +120,10 @@ std::ifstream open_file(const fs::path& path) {
   return in;
 }
 
+void require_file(const fs::path& path) {
+  static_cast<void>(open_file(path));
+}
+
 std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
   std::ifstream in = open_file(path);
   std::error_code error;

@@ -35,6 +35,9 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 ///     an unfinished FolderChange, or, while a Confinement lives, is a device or a pipe
 [[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
 
+/// @throws InvalidInput as open_file
+void require_file(const std::filesystem::path& path);
+
 /// The whole content of a file.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is empty or holds more than
 /// max_bytes

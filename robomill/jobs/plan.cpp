@@ -37,11 +37,6 @@ void append_warnings(std::vector<std::string> notes, std::vector<std::string>& w
   append(warnings, io::take_warnings(notes));
 }
 
-/// @throws InvalidInput if a file that the job names is missing: its tables are not in what was read
-void require_there(const std::filesystem::path& part) {
-  static_cast<void>(io::open_file(part));
-}
-
 /// Where prediction and measurement are further apart than this, the lobes are those of another tip.
 constexpr double far_apart = 0.2;
 
@@ -203,7 +198,7 @@ std::optional<decision::SpindleCapacity> capacity_along(const process::ForcesRes
 /// The job's cell, for forces or for what smooths its program; only serial arms have forces.
 std::optional<cell::CellFile> cell_of(const Job& job) {
   if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
-  require_there(job.cell);
+  io::require_file(job.cell);
   cell::CellFile cell = cell::read_cell(job.file, job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
   if (!job.near_deg.empty()) cell::ask_for_posture(cell, job.near_deg);
   return cell;
@@ -306,7 +301,7 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
                     Progress& progress) {
   if (result.job.forces.empty()) return;
   const bool along = !result.job.program.empty();
-  require_there(result.job.forces);
+  io::require_file(result.job.forces);
   const process::ForcesFile file =
       process::read_forces(result.job.file, along ? process::ForcesJob::program : process::ForcesJob::revolution);
   warn_of_edges(file, result);
@@ -327,7 +322,7 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
 
 /// lobes.toml, and what a plan asks of it.
 void read_cut(PlanResult& result) {
-  require_there(result.job.lobes);
+  io::require_file(result.job.lobes);
   result.cut = read_lobes(result.job.file);
   append(result.notes, result.cut.notes);
   append(result.warnings, io::take_warnings(result.notes));
