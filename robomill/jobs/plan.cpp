@@ -113,7 +113,9 @@ void measure(PlanResult& result, Progress& progress) {
 void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   // Of FRFs the modes are doubled, where the directions are equal, and not what they are fitted to.
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
-  if (!result.frfs) result.model = modal::read_modes(result.job.modes, result.notes);
+  if (!result.frfs) {
+    result.model = result.job.modes.empty() ? result.job.own_modes : modal::read_modes(result.job.modes, result.notes);
+  }
   const modal::MissingDirections& directions = result.job.directions;
   const auto assumed = process::complete_directions(result.model, measured, directions, result.job.file, "job");
   if (assumed) add_assumed(result.assumed, {*assumed});

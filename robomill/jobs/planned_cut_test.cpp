@@ -119,7 +119,9 @@ TEST_F(Planned, TheTablesOfAJobStandWhereverTheUserPutsThem) {
   const PlanResult plan = run_job(named, 1);
   ASSERT_TRUE(plan.recommendation.recommended);
   const decision::Operation& op = *plan.recommendation.recommended;
-  for (const auto& document : {named, whole, included, bare}) {
+  const std::string mode = "[{ frequency_hz = 500, damping_ratio = 0.02, modal_mass_kg = 0.5 }]\n";
+  const auto inside = folder_.file("inside.toml", "[job]\n" + spindle + lobes_text("x = " + mode + "y = " + mode));
+  for (const auto& document : {named, whole, included, bare, inside}) {
     const PlanResult same = run_job(document, 1);
     EXPECT_EQ(same.recommendation.recommended->axial_depth_m, op.axial_depth_m) << document;
     EXPECT_EQ(same.recommendation.recommended->spindle_speed_rad_per_s, op.spindle_speed_rad_per_s) << document;

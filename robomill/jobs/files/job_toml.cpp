@@ -27,11 +27,13 @@ void read_part(io::TomlFile& file, const char* key, bool held, const Job& job, s
   if (!file.path(key, part) && held) part = job.file;
 }
 
-/// The structure that [dynamics] names, where the job names no other.
+/// The structure of [dynamics], where the job names no other.
 void read_dynamics(io::TomlFile& file, Job& job) {
-  file.path("dynamics.modes", job.modes);
   std::filesystem::path frf;
-  if (file.path("dynamics.frf", frf)) job.frf.push_back(std::move(frf));
+  process::read_structure(file, "dynamics", job.modes, frf, job.own_modes);
+  if (!frf.empty()) job.frf.push_back(std::move(frf));
+  if (job.directions.equal || !job.directions.rigid.empty()) return;
+  job.directions = process::read_missing_directions(file, "dynamics", job.own_modes);
 }
 
 void read_sources(io::TomlFile& file, Job& job) {
@@ -64,13 +66,15 @@ void read_sources(io::TomlFile& file, Job& job) {
   modal::ModalModel none;
   job.directions = process::read_missing_directions(file, "job", none);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
-  if (!job.has_structure()) read_dynamics(file, job);
+  if (!job.has_structure() && !job.lobes.empty()) read_dynamics(file, job);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
-                      (job.assembly.empty() ? 0 : 1);
+                      (job.assembly.empty() ? 0 : 1) + (job.own_modes.modes.empty() ? 0 : 1);
   if (sources > 1 || (sources == 0 && !job.judges_blocks())) {
     throw file.reject(
         "job", "must name exactly one of hits, frf, modes and assembly",
-        sources == 0 ? "None is given; forces, cell and program together need none" : "Several are given");
+        sources == 0
+            ? "None is given, nor modes, frf, x and y in [dynamics]; forces, cell and program together need none"
+            : "Several are given");
   }
   if (measured && job.assembly.empty()) {
     throw file.reject("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");

@@ -17,7 +17,7 @@
 namespace robomill::jobs {
 
 /// job.toml. Paths are resolved; an empty one is absent. lobes, forces and cell are the job itself where it holds their
-/// tables. Exactly one of hits, frf, modes and assembly is given, or [dynamics] gives modes or frf; a job that judges
+/// tables. Exactly one of hits, frf, modes and assembly is given, or [dynamics] gives the structure; a job that judges
 /// blocks may have none of them, nor lobes.
 struct Job {
   std::filesystem::path file = {};       ///< this one
@@ -31,6 +31,7 @@ struct Job {
   std::filesystem::path forces = {};    ///< a cut whose forces are reported …
   std::filesystem::path cell = {};      ///< … with the robot that it bends …
   std::filesystem::path program = {};   ///< … and along a program, which a cell with [smoothing] smooths
+  modal::ModalModel own_modes = {};     ///< x, y and z of [dynamics]
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
@@ -46,7 +47,7 @@ struct Job {
   /// Whether every block of a program is looked at: forces along it, and a robot.
   [[nodiscard]] bool judges_blocks() const { return !forces.empty() && !cell.empty() && !program.empty(); }
   [[nodiscard]] bool has_structure() const {
-    return !hits.empty() || !frf.empty() || !modes.empty() || !assembly.empty();
+    return !hits.empty() || !frf.empty() || !modes.empty() || !assembly.empty() || !own_modes.modes.empty();
   }
   ROBOMILL_API void validate() const;
 };

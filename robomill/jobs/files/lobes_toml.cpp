@@ -315,14 +315,15 @@ void read_posture(io::TomlFile& file, LobesFile& out) {
   }
 }
 
-/// What a job measures or predicts the structure from.
-constexpr const char* structure_keys[] = {"job.hits", "job.frf", "job.modes", "job.assembly"};
+/// What a job measures, predicts or takes the structure from.
+constexpr const char* structure_keys[] = {"job.hits",     "job.frf",    "job.modes",  "job.assembly", "dynamics.modes",
+                                          "dynamics.frf", "dynamics.x", "dynamics.y", "dynamics.z"};
 
 LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = file.file_of_part("job.lobes", "lobes");
   const bool gives_structure = std::ranges::any_of(structure_keys, [&](const char* key) { return file.has(key); });
-  if (gives_structure) out.job = path;
+  if (gives_structure && file.has("job")) out.job = path;
   cutting::Cutter cutter;
   process::read_cutter(file, cutter);
   out.problem.milling.tool = cutter.mill;

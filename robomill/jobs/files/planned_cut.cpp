@@ -25,7 +25,7 @@ bool is_measured(const Job& job) {
   sources.insert(sources.end(), {job.hits, job.modes, job.assembly});
   std::erase(sources, fs::path());
   std::error_code error;
-  return !sources.empty() &&
+  return job.has_structure() &&
          std::ranges::all_of(sources, [&](const fs::path& path) { return fs::exists(path, error); });
 }
 
