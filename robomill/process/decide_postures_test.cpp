@@ -19,6 +19,7 @@
 #include "robomill/process/decide/motion_loads.hpp"
 #include "robomill/robot/pose.hpp"
 #include "testing/process/programs.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::process {
 namespace decide_postures_test {

@@ -15,6 +15,7 @@
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "testing/process/programs.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::process {
