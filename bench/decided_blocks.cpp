@@ -123,7 +123,7 @@ InTime in_time(const Judged& program, std::size_t block, const process::Dynamics
   out.cuts = true;
   const cutting::PoseEngagement& engaged = program.forces.program->cuts[block];
   const process::BlockResult& load = program.forces.program->blocks[block];
-  const Eigen::Matrix3d base_from_feed = program.forces.cell->cell.workpiece.linear() * engaged.work_from_feed;
+  const Eigen::Matrix3d base_from_feed = program.forces.cell->robot.workpiece.linear() * engaged.work_from_feed;
   simulation::PostureCut cut;
   cut.cutter = program.forces.cut.cutter;
   cut.engagement = engaged.engagement;

@@ -43,14 +43,14 @@ TEST(TenPostures, HaveACellThatReadsBackAsWhatIsTold) {
       EXPECT_NEAR(read.postures[p].joints[k], joints[p](static_cast<Eigen::Index>(k)), 1e-8);
     }
     const Eigen::Isometry3d expected = robot::forward(arm.told().arm, joints[p]);
-    EXPECT_LT((robot::forward(read.cell.arm, joints[p]).matrix() - expected.matrix()).norm(), 1e-9);
+    EXPECT_LT((robot::forward(read.robot.arm, joints[p]).matrix() - expected.matrix()).norm(), 1e-9);
     const Eigen::MatrixXd mass = robot::mass_matrix(arm.told().arm, joints[p]);
-    EXPECT_LT((robot::mass_matrix(read.cell.arm, joints[p]) - mass).norm(), 1e-4 * mass.norm());
+    EXPECT_LT((robot::mass_matrix(read.robot.arm, joints[p]) - mass).norm(), 1e-4 * mass.norm());
   }
-  EXPECT_NEAR(read.cell.tool_length_m, arm.told().tool_length_m, 1e-12);
+  EXPECT_NEAR(read.robot.tool_length_m, arm.told().tool_length_m, 1e-12);
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_NEAR(read.cell.arm.joints[k].stiffness / arm.told().arm.joints[k].stiffness, 1.0, 1e-5);
-    EXPECT_NEAR(read.cell.arm.joints[k].damping / arm.told().arm.joints[k].damping, 1.0, 1e-5);
+    EXPECT_NEAR(read.robot.arm.joints[k].stiffness / arm.told().arm.joints[k].stiffness, 1.0, 1e-5);
+    EXPECT_NEAR(read.robot.arm.joints[k].damping / arm.told().arm.joints[k].damping, 1.0, 1e-5);
   }
 }
 

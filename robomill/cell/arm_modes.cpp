@@ -13,7 +13,7 @@ namespace robomill::cell {
 std::optional<robot::Link> payload_of(const Cell& cell) {
   if (!cell.end_effector.mass_kg) return std::nullopt;
   constexpr double radius_of_gyration_m = 0.1;
-  const Eigen::Isometry3d flange = cell.cell.arm.flange * cell.mount().inverse();  // after the last joint
+  const Eigen::Isometry3d flange = cell.robot.arm.flange * cell.mount().inverse();  // after the last joint
   robot::Link link;
   link.mass_kg = *cell.end_effector.mass_kg;
   link.center_m = flange * cell.end_effector.center();
@@ -23,7 +23,7 @@ std::optional<robot::Link> payload_of(const Cell& cell) {
 
 robot::Arm loaded_arm(const Cell& cell) {
   const std::optional<robot::Link> payload = payload_of(cell);
-  return payload ? robot::with_payload(cell.cell.arm, *payload) : cell.cell.arm;
+  return payload ? robot::with_payload(cell.robot.arm, *payload) : cell.robot.arm;
 }
 
 bool vibrates(const robot::Arm& arm) {

@@ -20,7 +20,7 @@ program::ProgramReading program_reading(const Cell& cell) {
 std::unique_ptr<robot::Kinematics> kinematics(const Cell& cell) {
   if (cell.hybrid) return std::make_unique<robot::HybridKinematics>(*cell.hybrid);
   try {
-    return std::make_unique<robot::SerialKinematics>(cell.cell);
+    return std::make_unique<robot::SerialKinematics>(cell.robot);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     parts.where = cell.path.string();
@@ -40,8 +40,8 @@ std::vector<Assumption> assumed_along_program(const Cell& cell, bool gamma_chose
   };
   std::string open;
   constexpr double without_limit = 1e299;
-  for (std::size_t i = 0; i < cell.cell.arm.joints.size(); ++i) {
-    const robot::Joint& joint = cell.cell.arm.joints[i];
+  for (std::size_t i = 0; i < cell.robot.arm.joints.size(); ++i) {
+    const robot::Joint& joint = cell.robot.arm.joints[i];
     if (joint.min_position > -without_limit && joint.max_position < without_limit) continue;
     open += fmt::format("{}{}", open.empty() ? "" : ", ", i + 1);
   }

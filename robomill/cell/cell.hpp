@@ -29,7 +29,7 @@ struct PostureEntry {
 /// A robot with its tool before a workpiece.
 struct Cell {
   std::filesystem::path path = {};  ///< of the file that describes it, for messages; empty where there is none
-  robot::Cell cell = {};            ///< a hybrid machine's has no joints, but workpiece and tool all the same
+  robot::Cell robot = {};           ///< a hybrid machine's has no joints, but workpiece and tool all the same
   std::optional<robot::HybridMachine> hybrid = {};  ///< in the place of the arm
   std::string machine = {};  ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
                              ///< "xyzbc-head"; empty where not said
@@ -49,10 +49,10 @@ struct Cell {
   std::optional<robot::CellGeometry> geometry = {};  ///< for collisions; the cutter's edges are the caller's to give
   std::vector<std::string> notes = {};               ///< sentences for the user
 
-  /// The spindle frame in the flange frame: cell.arm.flange leads to the spindle frame, and what users say in the
+  /// The spindle frame in the flange frame: robot.arm.flange leads to the spindle frame, and what users say in the
   /// flange frame is before it.
   [[nodiscard]] Eigen::Isometry3d mount() const {
-    return end_effector.tip * Eigen::Translation3d(0.0, 0.0, -cell.tool_length_m);
+    return end_effector.tip * Eigen::Translation3d(0.0, 0.0, -robot.tool_length_m);
   }
 };
 

@@ -28,7 +28,7 @@ constexpr std::size_t most_blocks = 200'000;
 /// The flange, before any mount, in B.
 Eigen::Isometry3d flange_at(const Cell& cell, const robot::Position6& position) {
   if (!cell.hybrid) {
-    return robot::forward(cell.cell.arm, position) * cell.mount().inverse();
+    return robot::forward(cell.robot.arm, position) * cell.mount().inverse();
   }
   const robot::HybridMachine& machine = *cell.hybrid;
   const robot::PlatformPose platform = robot::HybridKinematics(machine).platform(position);
@@ -44,8 +44,8 @@ CellStand stand_at(const Cell& cell, const robot::Kinematics& machine, std::stri
   CellStand out{.name = std::move(name), .position = position};
   out.flange = flange_at(cell, position);
   out.tool = machine.forward(position);
-  out.tip_m = cell.cell.workpiece * out.tool.tip_m;
-  out.axis = cell.cell.workpiece.linear() * out.tool.axis;
+  out.tip_m = cell.robot.workpiece * out.tool.tip_m;
+  out.axis = cell.robot.workpiece.linear() * out.tool.axis;
   const robot::JointLimits& limits = machine.limits();
   for (int i = 0; i < machine.joints(); ++i) {
     out.to_limit(i) = std::min(position(i) - limits.min_position(i), limits.max_position(i) - position(i));
@@ -112,7 +112,7 @@ void note_what_is_open(const Targets& targets, CellCheck& out, Progress& progres
   }
   if (out.placement.works() || !cell.gamma_given) return;
   cell.gamma_given = false;
-  if (const Placement free = judge(cell, cell.cell.workpiece, targets, progress); free.works()) {
+  if (const Placement free = judge(cell, cell.robot.workpiece, targets, progress); free.works()) {
     out.notes.push_back(fmt::format(
         "Without robot.gamma_deg the workpiece can stay where it is: the flange then stands at {:.0f}° about the tool.",
         free.choice.posture.gamma_rad.front() / units::deg));
@@ -146,7 +146,7 @@ CellCheck run_cell_check(const CellCheckJob& job, Cell read, Progress& progress)
   }
   out.stands.push_back(stand_at(cell, *machine, "home", home));
   add_limit_stands(*machine, home, out);
-  out.placement = judge(cell, cell.cell.workpiece, targets, progress);
+  out.placement = judge(cell, cell.robot.workpiece, targets, progress);
   if (out.placement.works()) {
     out.stands.push_back(stand_at(cell, *machine, program ? "program's start" : "workpiece's origin",
                                   out.placement.choice.posture.start));

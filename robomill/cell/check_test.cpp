@@ -73,7 +73,7 @@ TEST(CellCheck, ShowsWhereTheJointsPutTheTool) {
         checked(folder, kr210("origin_mm = [1800, 0, 700]\nrotation_deg = [0, 0, 90]\n") + tool, "", joints);
     const Cell plain = read_cell(folder.file("plain.toml", "[robot]\nmodel = \"kuka-kr210-r2700\"\n"));
     const Eigen::Isometry3d flange =
-        robot::forward(plain.cell.arm, Eigen::Map<const Eigen::VectorXd>(joints.data(), 6));
+        robot::forward(plain.robot.arm, Eigen::Map<const Eigen::VectorXd>(joints.data(), 6));
     const CellStand& stand = named(check, "as asked for");
     EXPECT_LT((stand.flange.matrix() - flange.matrix()).cwiseAbs().maxCoeff(), 1e-12);
     const Eigen::Vector3d tip =

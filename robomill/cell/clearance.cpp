@@ -56,7 +56,7 @@ std::unique_ptr<robot::CollisionChecker> clearance_checker(const Cell& cell, con
   } else {
     take_shank(geometry, cell, assumed);
   }
-  return std::make_unique<robot::CollisionChecker>(cell.cell, geometry);
+  return std::make_unique<robot::CollisionChecker>(cell.robot, geometry);
 }
 
 PathLooks::PathLooks(const robot::CollisionChecker& checker, int joints, double step_m)

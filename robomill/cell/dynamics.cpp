@@ -22,7 +22,7 @@ namespace {
 
 /// Of the flange before any mount, in base axes.
 Eigen::Matrix3d flange_axes(const Cell& cell, const Eigen::VectorXd& joints) {
-  return robot::forward(cell.cell.arm, joints).linear() * cell.mount().linear().transpose();
+  return robot::forward(cell.robot.arm, joints).linear() * cell.mount().linear().transpose();
 }
 
 Eigen::VectorXd to_vector(const std::vector<double>& joints) {
@@ -180,8 +180,8 @@ void warn_of_misfits(const modal::PostureModel& model, const std::vector<modal::
 std::vector<Assumption> assumed_damping(const Cell& cell, const modal::PostureReport& report) {
   if (report.source == modal::PostureReport::Source::interpolated) return {};
   std::string joints;
-  for (std::size_t k = 0; k < cell.cell.arm.joints.size(); ++k) {
-    if (cell.cell.arm.joints[k].damping > 0.0) continue;
+  for (std::size_t k = 0; k < cell.robot.arm.joints.size(); ++k) {
+    if (cell.robot.arm.joints[k].damping > 0.0) continue;
     joints += fmt::format("{}{}", joints.empty() ? "" : ", ", k + 1);
   }
   if (joints.empty()) return {};
@@ -241,7 +241,7 @@ CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
   for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out));
   const modal::PostureModelOptions options;
   try {
-    out.model = std::make_shared<modal::PostureModel>(cell.cell, payload_of(cell), postures, options, progress);
+    out.model = std::make_shared<modal::PostureModel>(cell.robot, payload_of(cell), postures, options, progress);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     if (parts.field == "cell") parts.field = cell.path.string();
@@ -288,7 +288,7 @@ namespace {
 /// Arms of 1.5 m reach and more have their first mode at 5 to 25 Hz.
 void warn_of_lowest(const Cell& cell, ModesOfPosture& out) {
   if (out.report.source != modal::PostureReport::Source::cell || out.prediction.modes.modes.empty()) return;
-  if (robot::stretched_reach_m(cell.cell.arm) < 1.5) return;
+  if (robot::stretched_reach_m(cell.robot.arm) < 1.5) return;
   double lowest_hz = std::numeric_limits<double>::infinity();
   for (const modal::Mode& mode : out.prediction.modes.modes) lowest_hz = std::min(lowest_hz, mode.frequency_hz);
   if (lowest_hz >= 2.5 && lowest_hz <= 28.0) return;
@@ -303,7 +303,7 @@ void warn_of_lowest(const Cell& cell, ModesOfPosture& out) {
 ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_given,
                              PostureAxes axes, Progress& progress) {
   const CellFile cell = read_cell(path);
-  require_posture(cell.cell.arm, joints_given);
+  require_posture(cell.robot.arm, joints_given);
   ModesOfPosture out;
   out.joints = joints_given;
   const Eigen::VectorXd joints = to_vector(out.joints);
@@ -322,7 +322,7 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   std::ranges::move(io::take_warnings(of_cell), std::back_inserter(out.warnings));
   warn_of_lowest(cell, out);
   out.assumed = std::move(dynamics.assumed);
-  const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
+  const double along = robot::forward(cell.robot.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));
   if (axes == PostureAxes::flange) {
     out.prediction.modes = turned(out.prediction.modes, flange_axes(cell, joints).transpose(), "joints");

@@ -54,7 +54,7 @@ path::PostureOptions posture_options(const Cell& cell, const robot::Kinematics& 
 }
 
 void ask_for_posture(Cell& cell, const std::vector<double>& joints_deg) {
-  const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
+  const std::vector<robot::Joint>& joints = cell.robot.arm.joints;
   if (cell.hybrid) throw InvalidInput("--posture", "goes with serial arms; this machine has one way to a pose");
   if (joints_deg.size() != joints.size()) {
     throw InvalidInput("--posture",

@@ -294,7 +294,7 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
   const cell::CellFile file = cell::read_cell(path);
   for (const process::BlockResult& row : result.program->blocks) {
     const program::Block& block = result.program->program.blocks[row.force.block];
-    const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));
+    const robot::ToolPose pose = robot::tool_pose(file.robot, robot::forward(file.robot.arm, row.joints));
     EXPECT_LE((pose.tip_m - block.end.tip_m).norm(), 1e-9);
     EXPECT_LE((pose.axis - block.end.axis).norm(), 1e-9);
   }

@@ -500,7 +500,7 @@ TEST_F(Init, EveryKnownArmMakesACell) {
     }
     const cell::CellFile taken = cell::read_cell(io::TomlSource("cell.toml", text));
     for (std::size_t k = 0; k < 6; ++k) {
-      const robot::Joint &ours = taken.cell.arm.joints[k], &theirs = own.cell.arm.joints[k];
+      const robot::Joint &ours = taken.robot.arm.joints[k], &theirs = own.robot.arm.joints[k];
       for (const auto value : {&robot::Joint::max_velocity, &robot::Joint::max_acceleration, &robot::Joint::max_jerk,
                                &robot::Joint::stiffness}) {
         EXPECT_LE(ours.*value, theirs.*value * (1.0 + 1e-8)) << arm.name << k;

@@ -166,7 +166,7 @@ page::Report page_of(const CoefficientsResult& result) {
 
 page::Report page_of(const StiffnessResult& result) {
   page::Report page = titled("Joint stiffness", summary(result));
-  page.stiffness = robot::stiffness_json(result.found, result.cell.cell.arm, result.loads);
+  page.stiffness = robot::stiffness_json(result.found, result.cell.robot.arm, result.loads);
   page.notes = result.cell.notes;
   page.assumed = result.assumed;
   return page;

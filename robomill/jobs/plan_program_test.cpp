@@ -129,7 +129,7 @@ TEST_F(PlannedBlocks, PosturesAreThoseOfTheSmoothedPath) {
   ASSERT_TRUE(plan.shown().path && plan.shown().blocks);
   const process::ProgramForces& program = *plan.shown().forces->program;
   ASSERT_EQ(plan.shown().path->block_joints.size(), program.blocks.size());
-  const robot::Cell& arm = plan.shown().forces->cell->cell;
+  const robot::Cell& arm = plan.shown().forces->cell->robot;
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
     EXPECT_EQ(program.blocks[i].joints, plan.shown().path->block_joints[i]);
     const robot::ToolPose pose = robot::tool_pose(arm, robot::forward(arm.arm, program.blocks[i].joints));

@@ -24,7 +24,7 @@ void warn_of_loads(StiffnessResult& result) {
   for (const std::string& text : robot::unusual_displacements(result.loads.loads)) warn(text);
   for (std::size_t k = 0; k < result.found.joints.size(); ++k) {
     const robot::IdentifiedJoint& joint = result.found.joints[k];
-    if (!joint.identifiable || result.cell.cell.arm.joints[k].prismatic) continue;
+    if (!joint.identifiable || result.cell.robot.arm.joints[k].prismatic) continue;
     const auto unusual = io::unusual_value("joint_stiffness_n_m_per_rad", std::span(&joint.stiffness, 1));
     if (unusual)
       warn(fmt::format("joint {} comes out as {:.4g} N m/rad, which {}.", k + 1, joint.stiffness, unusual->rule));
@@ -37,7 +37,7 @@ StiffnessResult run_stiffness(const StiffnessJob& job) {
   StiffnessResult out;
   out.output = job.output;
   out.cell = cell::read_cell(job.cell);
-  const robot::Cell& cell = out.cell.cell;
+  const robot::Cell& cell = out.cell.robot;
   out.loads = robot::read_loads(job.loads, cell.arm);
   out.cell.notes.insert(out.cell.notes.end(), out.loads.notes.begin(), out.loads.notes.end());
   const Eigen::Isometry3d mount = out.cell.mount();

@@ -241,7 +241,7 @@ std::string summary(const StiffnessResult& result) {
   std::string out;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     const robot::IdentifiedJoint& joint = found.joints[i];
-    const char* unit = result.cell.cell.arm.joints[i].prismatic ? "N/m" : "N m/rad";
+    const char* unit = result.cell.robot.arm.joints[i].prismatic ? "N/m" : "N m/rad";
     if (joint.identifiable) {
       io::append(out, "joint {}  {:.6g} ± {:.2g} {}\n", i + 1, joint.stiffness, joint.deviation, unit);
     } else {

@@ -33,7 +33,7 @@ std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOpti
                                     std::vector<BlockRow>& rows) {
   Classes classes(options.alike);
   const ProgramForces& program = *forces.program;
-  const Eigen::Matrix3d base_from_work = forces.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = forces.cell->robot.workpiece.linear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const BlockResult& force = program.blocks[i];
     const cutting::PoseEngagement& cut = program.cuts[i];
@@ -81,7 +81,7 @@ Shared evaluate(const ForcesResult& forces, std::size_t block, const DynamicsAt&
     const PostureDynamics there = dynamics(row.joints);
     const JudgedCut judged = judged_cut({.setup = forces.cut,
                                          .cut = forces.program->cuts[block],
-                                         .base_from_work = forces.cell->cell.workpiece.linear(),
+                                         .base_from_work = forces.cell->robot.workpiece.linear(),
                                          .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
                                          .tolerance = options.tolerance},
                                         there.modes);

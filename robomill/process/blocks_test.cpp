@@ -175,7 +175,7 @@ TEST_F(Blocks, TheEngagementFeelsTheDeflection) {
   const BlockResult& row = forces.program->blocks[9];
   EXPECT_EQ(row.settled, BlockResult::Settled::found);
   const robot::Stiffness stiffness =
-      robot::stiffness(forces.cell->cell.arm, row.joints, robot::tip_point(forces.cell->cell), {});
+      robot::stiffness(forces.cell->robot.arm, row.joints, robot::tip_point(forces.cell->robot), {});
   const double feed_m = 0.9 / 60.0 / (200.0 * 2.0);
   const cutting::StaticDeflection one = cutting::static_deflection(
       forces.cut.cutter, {.axial_depth_m = 1e-3, .direction = cutting::MillingDirection::slot}, forces.cut.coefficients,

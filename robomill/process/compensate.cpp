@@ -56,7 +56,7 @@ double length_m(const program::Program& program, std::size_t block) {
 
 /// Follows the joints to the moved ends of the blocks.
 void check_joints(const ForcesResult& forces, const Offsets& points) {
-  const robot::Cell& cell = forces.cell->cell;
+  const robot::Cell& cell = forces.cell->robot;
   const std::vector<BlockResult>& rows = forces.program->blocks;
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -270,7 +270,7 @@ Compensation compensate(const ForcesResult& forces, const DynamicsAt& dynamics, 
 }
 
 DynamicsAt static_dynamics(const cell::Cell& cell) {
-  return [cell = cell.cell](const Eigen::VectorXd& joints) {
+  return [cell = cell.robot](const Eigen::VectorXd& joints) {
     constexpr double frequency_hz = 50e3;
     constexpr double damping_ratio = 0.7;
     const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints, robot::tip_point(cell));

@@ -379,7 +379,7 @@ TEST_F(Compensate, TheBoundBinds) {
 TEST_F(Compensate, TheJointsFollowToTheMovedEnds) {
   const WallJob job = {.depth = 4.0, .length = 24.0};
   ForcesResult forces = forces_of(job);
-  robot::Joint& first = forces.cell->cell.arm.joints.front();
+  robot::Joint& first = forces.cell->robot.arm.joints.front();
   first.min_position = 1e300;
   first.max_position = -1e300;
   for (const BlockResult& block : forces.program->blocks) {
@@ -407,7 +407,7 @@ TEST_F(Compensate, AControllerThatCompensatesIsLeftToIt) {
 TEST_F(Compensate, JointStiffnessAloneIsEnough) {
   const WallJob job = {.depth = 4.0, .length = 24.0};
   const ForcesResult forces = forces_of(job);
-  const robot::Cell& cell = forces.cell->cell;
+  const robot::Cell& cell = forces.cell->robot;
   const Eigen::VectorXd& joints = forces.program->blocks[12].joints;
   const modal::ModalModel modes = static_dynamics(*forces.cell)(joints).modes;
   const Eigen::Matrix3d compliance =

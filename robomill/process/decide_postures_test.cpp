@@ -66,7 +66,7 @@ TEST_F(DecidePostures, TurnsGammaWhereThatAloneHelps) {
   EXPECT_EQ(turned.gamma_map->margin.cols(), std::ssize(turned.gamma_map->block));
   EXPECT_EQ(turned.gamma_map->margin.rows(), std::ssize(turned.gamma_map->gamma_rad));
   // By forward kinematics: the tip is where the program has it, turned by what was decided.
-  const robot::Cell& cell = judged.forces.cell->cell;
+  const robot::Cell& cell = judged.forces.cell->robot;
   for (std::size_t i = 0; i < turned.forces->program->program.blocks.size(); ++i) {
     const robot::ToolPose pose =
         robot::tool_pose(cell, robot::forward(cell.arm, turned.forces->program->blocks[i].joints));
@@ -99,7 +99,7 @@ TEST_F(DecidePostures, ANearMissOnTheWayTurnsTheFlangeAside) {
   const DynamicsAt dynamics = constant_dynamics(modes(20.0));
   add_geometry(far_box);
   const Judged still = judge(dynamics);
-  const robot::Cell& cell = still.forces.cell->cell;
+  const robot::Cell& cell = still.forces.cell->robot;
   // Along x of the flange, 60 mm out, above the holder.
   const Eigen::Isometry3d flange = robot::forward(cell.arm, still.forces.program->blocks[7].joints);
   const Eigen::Vector3d out =
@@ -145,7 +145,7 @@ cutting::Workpiece finished(const ForcesResult& forces, const program::Program& 
 TEST_F(DecidePostures, LeansAboutTheBallWhereThatAloneHelps) {
   add_geometry(far_box);
   const ForcesResult forces = this->forces();
-  const robot::Cell& cell = forces.cell->cell;
+  const robot::Cell& cell = forces.cell->robot;
   const DynamicsAt leaning = stiff_where_it_leans(cell, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
   const Judged judged = {.forces = forces, .blocks = blocks};
@@ -191,7 +191,7 @@ TEST_F(DecidePostures, LeansThatCollideAreLeftOut) {
   // Beside the end of the passes, 4 mm from the holder of an upright tool.
   add_geometry("fixtures = [{ box_from_mm = [31, -20, 25], box_to_mm = [45, 20, 60] }]\n");
   const ForcesResult forces = this->forces();
-  const DynamicsAt leaning = stiff_where_it_leans(forces.cell->cell, [](double mass) { return modes(mass); });
+  const DynamicsAt leaning = stiff_where_it_leans(forces.cell->robot, [](double mass) { return modes(mass); });
   const ProgramBlocks blocks = judge_blocks(forces, leaning, {.scan_points = 0});
   const Judged judged = {.forces = forces, .blocks = blocks};
   DecideProblem asked = problem(judged, leaning);
@@ -258,13 +258,13 @@ TEST_F(DecidePostures, LoadsOfJointsAreWeightAndCut) {
   add_links();
   const Judged judged = judge(constant_dynamics(modes(20.0)));
   const cell::Cell& file = *judged.forces.cell;
-  const robot::Arm& arm = file.cell.arm;
+  const robot::Arm& arm = file.robot.arm;
   ASSERT_EQ(judged.blocks.joint_loads.size(), judged.blocks.rows.size());
   for (std::size_t i = 0; i < judged.blocks.rows.size(); ++i) {
     const BlockRow& row = judged.blocks.rows[i];
     if (!row.cuts) continue;
     const std::vector<robot::JointLoad> at_rest = robot::joint_loads(
-        cell::loaded_arm(file), judged.forces.program->blocks[i].joints, robot::tip_point(file.cell));
+        cell::loaded_arm(file), judged.forces.program->blocks[i].joints, robot::tip_point(file.robot));
     double cut = 0.0, share = 0.0;
     for (std::size_t k = 0; k < at_rest.size(); ++k) {
       const robot::JointLoadRange& load = judged.blocks.joint_loads[i].joints[k];
@@ -303,10 +303,10 @@ TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
     moving.velocity = swing * rate * std::cos(rate * time_s);
     moving.acceleration = -swing * rate * rate * std::sin(rate * time_s);
     const std::vector<robot::JointLoad> exact = robot::joint_loads(
-        cell::loaded_arm(file), Eigen::VectorXd(sample.joints), robot::tip_point(file.cell), {}, moving);
+        cell::loaded_arm(file), Eigen::VectorXd(sample.joints), robot::tip_point(file.robot), {}, moving);
     for (std::size_t k = 0; k < exact.size(); ++k) {
       expected[sample.block] =
-          std::max(expected[sample.block], std::abs(*exact[k].torque()) / file.cell.arm.joints[k].max_torque);
+          std::max(expected[sample.block], std::abs(*exact[k].torque()) / file.robot.arm.joints[k].max_torque);
     }
   }
   // No block cuts: what each bears beside its weight is nothing.

@@ -70,7 +70,7 @@ TEST_F(Decide, IsWithinTwoPercentOfLookingAtEverySpeed) {
         const stability::BlockStability found =
             judged_cut({.setup = judged.forces.cut,
                         .cut = cut,
-                        .base_from_work = judged.forces.cell->cell.workpiece.linear(),
+                        .base_from_work = judged.forces.cell->robot.workpiece.linear(),
                         .spindle_speed_rad_per_s = factor * speed * units::rpm},
                        all)
                 .stability;
@@ -94,7 +94,7 @@ TEST_F(Decide, BlocksAreStableInTime) {
   const Judged judged = judge(dynamics);
   const DecideResult result = decide(problem(judged, dynamics));
   ASSERT_EQ(result.status, DecideResult::Status::found) << result.reason;
-  const Eigen::Matrix3d base_from_work = judged.forces.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = judged.forces.cell->robot.workpiece.linear();
   int looked = 0;
   for (std::size_t i = 0; i < result.blocks->rows.size() && looked < test::seeds(50); ++i) {
     const BlockRow& row = result.blocks->rows[i];

@@ -156,7 +156,7 @@ void run_revolution(ForcesResult& result, Progress& progress) {
                                       cut.slices);
   };
   Eigen::VectorXd joints;
-  const robot::Cell* cell = result.cell && !cut.joints_rad.empty() ? &result.cell->cell : nullptr;
+  const robot::Cell* cell = result.cell && !cut.joints_rad.empty() ? &result.cell->robot : nullptr;
   out.deflected = deflected(Eigen::Matrix3d::Zero());
   if (cell != nullptr) {
     joints = joints_of(cut, *cell);

@@ -68,7 +68,7 @@ InvalidInput out_of_the_way(const std::filesystem::path& path, const program::Bl
 std::vector<robot::Position6> joints_near(const cell::Cell& file, const program::Program& program,
                                           const std::vector<Eigen::Isometry3d>& flanges,
                                           const std::filesystem::path& path) {
-  const robot::Arm& arm = file.cell.arm;
+  const robot::Arm& arm = file.robot.arm;
   if (arm.size() != 6 || file.start_joints.size() != 6) {
     throw InvalidInput("robot.start_joints_deg", "must be given for an arm without a spherical wrist, of six joints",
                        "It is followed from there, near the program's first position");
@@ -98,7 +98,7 @@ std::vector<robot::Position6> joints_near(const cell::Cell& file, const program:
 /// Joints at the end of every block.
 std::vector<robot::Position6> joints_along(const cell::Cell& file, const program::Program& program,
                                            const std::filesystem::path& path) {
-  const robot::Cell& cell = file.cell;
+  const robot::Cell& cell = file.robot;
   std::vector<Eigen::Isometry3d> flanges;
   flanges.reserve(program.blocks.size());
   for (const program::Block& block : program.blocks) {
@@ -124,7 +124,7 @@ std::vector<robot::Position6> joints_along(const cell::Cell& file, const program
 
 /// Compliance of the tip in W at the end of each block, without load: what forces are weighed by.
 std::vector<Eigen::Matrix3d> compliances(const cell::Cell& file, const std::vector<robot::Position6>& joints) {
-  const robot::Cell& cell = file.cell;
+  const robot::Cell& cell = file.robot;
   const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
   std::vector<Eigen::Matrix3d> out(joints.size(), Eigen::Matrix3d::Identity());
   parallel_for(joints.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -157,7 +157,7 @@ void bend(const cell::Cell& file, const std::vector<robot::Position6>& joints, c
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       rows[i].joints = joints[i];
-      require_held(bend_block(file.cell, rows[i]), program.blocks[i], path, rows[i]);
+      require_held(bend_block(file.robot, rows[i]), program.blocks[i], path, rows[i]);
     }
   });
 }

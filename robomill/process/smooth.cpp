@@ -47,7 +47,7 @@ std::array<bool, 6> prismatic_of(const cell::Cell& cell) {
     prismatic.fill(true);
     return prismatic;
   }
-  const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
+  const std::vector<robot::Joint>& joints = cell.robot.arm.joints;
   for (std::size_t i = 0; i < std::min(joints.size(), prismatic.size()); ++i) prismatic.at(i) = joints[i].prismatic;
   return prismatic;
 }
@@ -93,7 +93,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothOptions& options, cons
   info.cell = bench.cell.path.filename().string();
   info.program = bench.program_name();
   info.end_effector = bench.cell.end_effector;
-  info.workpiece = bench.cell.cell.workpiece;
+  info.workpiece = bench.cell.robot.workpiece;
   info.maker = bench.cell.maker;
   return path::open_sample_file(options.output, info);
 }
@@ -253,7 +253,7 @@ std::size_t line_of(program::Source& program, std::size_t block) {
 void note_approach(const Bench& bench, const robot::CollisionChecker& checker, const robot::Position6& first,
                    std::vector<std::string>& notes) {
   const std::vector<double>& home = bench.cell.start_joints;
-  const auto joints = static_cast<Eigen::Index>(bench.cell.cell.arm.joints.size());
+  const auto joints = static_cast<Eigen::Index>(bench.cell.robot.arm.joints.size());
   if (static_cast<Eigen::Index>(home.size()) != joints || bench.cell.posture_asked) return;
   const Eigen::VectorXd from = Eigen::Map<const Eigen::VectorXd>(home.data(), joints);
   const robot::MoveClearance move =

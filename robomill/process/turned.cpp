@@ -55,7 +55,7 @@ class Turning {
   Turning(ForcesResult& forces, std::vector<double> turn_rad)
       : forces_(forces),
         run_(*forces.program),
-        cell_(forces.cell->cell),
+        cell_(forces.cell->robot),
         turn_rad_(std::move(turn_rad)),
         reason_(turn_rad_.size()) {}
 

@@ -149,7 +149,7 @@ TEST_F(Turned, TheRobotHoldsTheToolSoAndBendsAsItDoesThere) {
                                         {.path_m = 0.7 * end_m, .gamma_rad = 40.0 * units::deg}};
   const TurnedProgram turned = judge_turned(plan.program(), knots);
   ASSERT_TRUE(turned.lost.empty());
-  const robot::Cell& cell = plan.forces.cell->cell;
+  const robot::Cell& cell = plan.forces.cell->robot;
   const std::vector<double> way = ways(plan);
   bool other = false;
   for (std::size_t i = 0; i < plan.blocks.rows.size(); ++i) {
@@ -178,7 +178,7 @@ TEST_F(Turned, KeepsTheLeanOfADecision) {
       "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, diameter_mm = 30 }]\n"
       "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n";
   const ForcesResult programmed = this->forces();
-  const robot::Cell& cell = programmed.cell->cell;
+  const robot::Cell& cell = programmed.cell->robot;
   const DynamicsAt leaning = [&cell](const Eigen::VectorXd& joints) {
     const Eigen::Vector3d axis = robot::tool_pose(cell, robot::forward(cell.arm, joints)).axis;
     return PostureDynamics{.modes = modes(0.05 + 20.0 * (1.0 - axis.z() * axis.z()))};
@@ -210,7 +210,7 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
   const TurnedProgram free = judge_turned(plan.program(), ramp);
   ASSERT_TRUE(free.lost.empty());
   EXPECT_TRUE(free.other_way.empty());
-  robot::Joint& last = plan.forces.cell->cell.arm.joints.back();
+  robot::Joint& last = plan.forces.cell->robot.arm.joints.back();
   const double begin = plan.forces.program->blocks.front().joints(5);
   const double end = free.forces.program->blocks.back().joints(5);
   (end > begin ? last.max_position : last.min_position) = 0.5 * (begin + end);
@@ -218,7 +218,7 @@ TEST_F(Turned, SaysWhereTheRobotCannotStand) {
   EXPECT_EQ(judge_turned(plan.program(), ramp).other_way.size(), 1U);
   // … which here it has no room for, nor the others for the wrist to go over.
   (end > begin ? last.min_position : last.max_position) = begin + (end > begin ? -0.3 : 0.3);
-  std::vector<robot::Joint>& joints = plan.forces.cell->cell.arm.joints;
+  std::vector<robot::Joint>& joints = plan.forces.cell->robot.arm.joints;
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const auto [low, high] = std::ranges::minmax(free.forces.program->blocks, {},
@@ -289,12 +289,12 @@ TEST_F(Turned, SaysWhereADriveGivesNoMore) {
     return says;
   };
   EXPECT_FALSE(noted()) << "no drive has a limit";
-  for (robot::Joint& joint : plan.forces.cell->cell.arm.joints) {
+  for (robot::Joint& joint : plan.forces.cell->robot.arm.joints) {
     joint.link.mass_kg = 50.0;
     joint.max_torque = 1e6;
   }
   EXPECT_FALSE(noted());
-  plan.forces.cell->cell.arm.joints[1].max_torque = 1.0;
+  plan.forces.cell->robot.arm.joints[1].max_torque = 1.0;
   EXPECT_TRUE(noted());
 }
 

@@ -79,7 +79,7 @@ path::Posture posture_of(const SmoothResult& smoothed, const ReadAgain& written,
     out.gamma_rad = written.along(out.gamma_rad);
   }
   const std::optional<Eigen::VectorXd> joints = stand_at(
-      cell.cell, robot::spherical_wrist(cell.cell.arm),
+      cell.robot, robot::spherical_wrist(cell.robot.arm),
       {.tip_m = program.start.tip_m, .axis = program.start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
   if (!joints) {
     throw InvalidInput("gamma", out.gamma_rad.front() / units::deg, "°", "cannot be taken where the program starts");

@@ -52,7 +52,7 @@ CellFigure figure_of(const CellCheck& check, const CellStand& stand) {
   if (check.cell.hybrid) {
     add_legs(*check.cell.hybrid, stand, out);
   } else {
-    add_arm(check.cell.cell.arm, stand.position, out);
+    add_arm(check.cell.robot.arm, stand.position, out);
   }
   return out;
 }
@@ -193,11 +193,11 @@ CellDrawing draw_cell(const CellCheck& check, const path::Head& program) {
   for (const CellStand& stand : check.stands) out.figures.push_back(figure_of(check, stand));
   const std::size_t step = std::max<std::size_t>(1, (program.pose.size() + most_path_points - 1) / most_path_points);
   for (std::size_t i = 0; i < program.pose.size(); i += step) {
-    out.program_m.push_back(check.cell.cell.workpiece * program.pose[i].tip_m);
+    out.program_m.push_back(check.cell.robot.workpiece * program.pose[i].tip_m);
   }
   if (!check.cell.hybrid) {
     const auto home = std::ranges::find(check.stands, "home", &CellStand::name);
-    add_reach(check.cell.cell.arm, home->position, out);
+    add_reach(check.cell.robot.arm, home->position, out);
   }
   return out;
 }

@@ -46,7 +46,7 @@ ToolPlaces::ToolPlaces(const Cell& cell, const Eigen::Isometry3d& workpiece) : c
     gamma_rad_ = {0.0};
     return;
   }
-  arm_cell_ = cell.cell;
+  arm_cell_ = cell.robot;
   arm_cell_.workpiece = workpiece;
   auto arm = std::make_unique<robot::SerialKinematics>(arm_cell_);
   if (arm->closed_form()) {

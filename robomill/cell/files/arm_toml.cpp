@@ -185,9 +185,9 @@ std::vector<robot::DhRow> read_model(io::TomlFile& file, Cell& out) {
   out.maker = maker_of(out.model);
   io::TomlFile model(io::TomlSource(out.model + ".toml", std::string(text)));
   std::vector<robot::DhRow> rows = read_dh(model);
-  out.cell.arm = robot::arm_from_dh(rows, read_pose(model, "robot.base_origin_mm", "robot.base_rotation_deg"));
-  read_joint_lists(model, out.cell.arm, out.notes);
-  read_links(model, rows, out.cell.arm);
+  out.robot.arm = robot::arm_from_dh(rows, read_pose(model, "robot.base_origin_mm", "robot.base_rotation_deg"));
+  read_joint_lists(model, out.robot.arm, out.notes);
+  read_links(model, rows, out.robot.arm);
   model.numbers("robot.start_joints_deg", "home", units::deg, out.home);
   read_provenance(model, file.keys("robot"), out);
   return rows;
@@ -205,7 +205,7 @@ void read_urdf_arm(io::TomlFile& file, Cell& out) {
   robot::UrdfArm read = robot::read_urdf(urdf, reading);
   out.maker = maker_of(read.name);
   if (out.maker.empty()) out.maker = maker_of(urdf.stem().string());
-  out.cell.arm = std::move(read.arm);
+  out.robot.arm = std::move(read.arm);
   out.notes = std::move(read.notes);
 }
 
@@ -226,7 +226,7 @@ std::vector<robot::DhRow> read_kinematics(io::TomlFile& file, Cell& out) {
     if (file.has(key)) throw file.reject(key, "goes with robot.urdf");
   }
   std::vector<robot::DhRow> rows = read_dh(file);
-  out.cell.arm = file.locate([&] { return robot::arm_from_dh(rows); });
+  out.robot.arm = file.locate([&] { return robot::arm_from_dh(rows); });
   return rows;
 }
 
@@ -234,7 +234,7 @@ std::vector<robot::DhRow> read_kinematics(io::TomlFile& file, Cell& out) {
 
 std::vector<Eigen::Isometry3d> read_arm(io::TomlFile& file, Cell& out) {
   const std::vector<robot::DhRow> rows = read_kinematics(file, out);
-  robot::Arm& arm = out.cell.arm;
+  robot::Arm& arm = out.robot.arm;
   read_joint_lists(file, arm, out.notes);
   read_links(file, rows, arm);
   robot::Joint& first = arm.joints.front();

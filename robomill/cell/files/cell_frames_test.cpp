@@ -100,19 +100,19 @@ struct Physics {
 
 Physics physics_of(const CellFile& cell, const Eigen::VectorXd& joints, const Eigen::Vector3d& force_in_work_n) {
   Physics out;
-  const Eigen::Matrix3d to_base = cell.cell.workpiece.linear();
-  const robot::ToolPose at = robot::tool_pose(cell.cell, robot::forward(cell.cell.arm, joints));
+  const Eigen::Matrix3d to_base = cell.robot.workpiece.linear();
+  const robot::ToolPose at = robot::tool_pose(cell.robot, robot::forward(cell.robot.arm, joints));
   out.tip_m = at.tip_m;
   out.axis = at.axis;
-  const Eigen::Vector3d tip_m = robot::tip_point(cell.cell);
+  const Eigen::Vector3d tip_m = robot::tip_point(cell.robot);
   const robot::Wrench wrench = {.force_n = to_base * force_in_work_n};
   out.deflection_m = to_base.transpose() *
-                     robot::stiffness(cell.cell.arm, joints, tip_m).compliance.topLeftCorner<3, 3>() * wrench.force_n;
+                     robot::stiffness(cell.robot.arm, joints, tip_m).compliance.topLeftCorner<3, 3>() * wrench.force_n;
   const std::vector<robot::JointLoad> loads = robot::joint_loads(loaded_arm(cell), joints, tip_m, wrench);
   out.torque_n_m.resize(joints.size());
   for (std::size_t k = 0; k < loads.size(); ++k)
     out.torque_n_m(static_cast<Eigen::Index>(k)) = loads[k].torque().value();
-  robot::Cell loaded = cell.cell;
+  robot::Cell loaded = cell.robot;
   loaded.arm = loaded_arm(cell);
   const modal::ModalModel modes = arm_modes(loaded, joints);
   out.frequency_hz.resize(static_cast<Eigen::Index>(modes.modes.size()));
@@ -127,7 +127,7 @@ Physics physics_of(const CellFile& cell, const Eigen::VectorXd& joints, const Ei
   out.receptance = (to_base.transpose() * out.receptance * to_base).eval();
   robot::CellGeometry geometry = *cell.geometry;
   geometry.tool.edges = {{.height_m = 0.0, .radius_m = 5e-3}, {.height_m = 20e-3, .radius_m = 5e-3}};
-  out.distance_m = robot::CollisionChecker(cell.cell, geometry).check(joints, 10.0).distance_m;
+  out.distance_m = robot::CollisionChecker(cell.robot, geometry).check(joints, 10.0).distance_m;
   return out;
 }
 
@@ -204,13 +204,13 @@ TEST(CellFrames, APayloadHangsInTheFlangeFrame) {
     Eigen::VectorXd joints(6);
     for (double& q : joints) q = random.uniform(-1.2, 1.2);
     robot::Posture posture;
-    posture.update(plain.cell.arm, joints);
+    posture.update(plain.robot.arm, joints);
     const Eigen::Vector3d center_m = posture.flange * s.center_m;
     const Eigen::Vector3d weight_n(0.0, 0.0, -60.0 * 9.80665);
     const auto gravity = [&](const robot::Arm& arm) {
       return robot::joint_loads(arm, joints, Eigen::Vector3d::Zero());
     };
-    const auto with = gravity(loaded_arm(cell)), without = gravity(cell.cell.arm);
+    const auto with = gravity(loaded_arm(cell)), without = gravity(cell.robot.arm);
     for (Eigen::Index k = 0; k < 6; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const Eigen::Vector3d lever_m = center_m - posture.origin_m.col(k);
@@ -240,7 +240,7 @@ TEST(CellFrames, ThePointOfTheLoadsIsInTheFlangeFrame) {
       const Eigen::Vector3d force_n(random.uniform(-400.0, 400.0), random.uniform(-400.0, 400.0),
                                     random.uniform(-400.0, 400.0));
       const Eigen::Vector3d d =
-          robot::loaded_posture(plain.cell.arm, joints, point_m, {.force_n = force_n}).displacement_m / units::mm;
+          robot::loaded_posture(plain.robot.arm, joints, point_m, {.force_n = force_n}).displacement_m / units::mm;
       for (const double q : joints) loads += fmt::format("{:.12g},", q / units::deg);
       loads += fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", force_n.x(), force_n.y(), force_n.z(),
                            d.x(), d.y(), d.z());
@@ -249,7 +249,7 @@ TEST(CellFrames, ThePointOfTheLoadsIsInTheFlangeFrame) {
         jobs::run_stiffness({.loads = folder.file("loads.csv", loads), .cell = cell_path, .point_m = point_m});
     ASSERT_TRUE(found.converged());
     for (std::size_t k = 0; k < 6; ++k) {
-      const double truth = plain.cell.arm.joints[k].stiffness;
+      const double truth = plain.robot.arm.joints[k].stiffness;
       EXPECT_NEAR(found.found.joints[k].stiffness, truth, 1e-3 * truth) << "joint " << k + 1;
     }
   }

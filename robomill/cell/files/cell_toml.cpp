@@ -47,7 +47,7 @@ Kind read_kind(io::TomlFile& file, Robots usable) {
 }
 
 void read_start(io::TomlFile& file, Cell& out) {
-  const robot::Arm& arm = out.cell.arm;
+  const robot::Arm& arm = out.robot.arm;
   if (!file.numbers("robot.start_joints_deg", "start_joints", units::deg, out.start_joints)) return;
   if (out.start_joints.size() != arm.joints.size()) {
     throw file.reject("robot.start_joints_deg", fmt::format("must hold one angle a joint, {}", arm.joints.size()));
@@ -129,7 +129,7 @@ void read_output(io::TomlFile& file, const char* key, const char* member, path::
 /// Of exported programs: what the controller must know of the spindle, after the tool's length.
 void read_end_effector(io::TomlFile& file, Cell& out) {
   path::EndEffector& end = out.end_effector;
-  end.tip.translate(out.cell.tool_length_m * Eigen::Vector3d::UnitZ());
+  end.tip.translate(out.robot.tool_length_m * Eigen::Vector3d::UnitZ());
   const auto number = [&](const char* key, const char* member, std::optional<int>& value) {
     int read = 0;
     if (!file.integer(key, member, read)) return;
@@ -157,7 +157,7 @@ void read_end_effector(io::TomlFile& file, Cell& out) {
 
 /// Where the dynamics were measured, and what holds them.
 void read_postures(io::TomlFile& file, Cell& out) {
-  const robot::Arm& arm = out.cell.arm;
+  const robot::Arm& arm = out.robot.arm;
   for (std::size_t i = 0; i < file.tables("postures"); ++i) {
     const std::string row = fmt::format("postures[{}].", i), key = row + "joints_deg";
     PostureEntry entry;
@@ -219,24 +219,24 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   if (file.has("tool") && !file.has("tool.teeth")) file.require("tool.length_mm");  // else [tool] may be the cutter's
   out.origin_given = file.has("workpiece.origin_mm");
   out.length_given = file.has("tool.length_mm");
-  out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
-  file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
+  out.robot.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
+  file.number("tool.length_mm", "tool_length_m", units::mm, out.robot.tool_length_m);
   read_end_effector(file, out);
   read_program_words(file, out);
   if (!out.hybrid) {
     read_postures(file, out);
-    out.geometry = robot::read_geometry(file, out.cell, out.mount(), link_frames, out.notes);
+    out.geometry = robot::read_geometry(file, out.robot, out.mount(), link_frames, out.notes);
   }
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   add_assumed(out.assumed, io::sample_values(file));
-  for (const std::string& text : robot::unusual_masses(out.cell.arm))
+  for (const std::string& text : robot::unusual_masses(out.robot.arm))
     out.notes.push_back(fmt::format("{}{}: {}", io::warning_label, out.path.string(), text));
   if (out.hybrid) {
-    out.hybrid->workpiece = out.cell.workpiece;
-    out.hybrid->tool_length_m = out.cell.tool_length_m;
+    out.hybrid->workpiece = out.robot.workpiece;
+    out.hybrid->tool_length_m = out.robot.tool_length_m;
     file.locate([&] { out.hybrid->validate(); });
   } else {
-    file.locate([&] { out.cell.validate(); });
+    file.locate([&] { out.robot.validate(); });
   }
   return out;
 }

@@ -69,14 +69,14 @@ TEST(CellToml, TakesIdentifiedStiffness) {
   const CellFile cell = read_cell(
       folder.file("cell.toml", robot::stiffness_toml(found, arm) + "dh = [{ a_mm = 1 }, {}, {}, {}, {}, {}]\n"));
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(cell.cell.arm.joints[i].stiffness, arm.joints[i].stiffness, 1e-5 * arm.joints[i].stiffness);
+    EXPECT_NEAR(cell.robot.arm.joints[i].stiffness, arm.joints[i].stiffness, 1e-5 * arm.joints[i].stiffness);
   }
 }
 
 TEST(CellToml, ReadsADhArmWithAllItsLists) {
   const Folder folder;
   const CellFile file = read_cell(folder.file("cell.toml", good));
-  const robot::Arm& arm = file.cell.arm;
+  const robot::Arm& arm = file.robot.arm;
   const robot::Arm expected = arms::kr210();
   ASSERT_EQ(arm.joints.size(), 6U);
   const Eigen::VectorXd at = arms::kr210_posture();
@@ -93,7 +93,7 @@ TEST(CellToml, ReadsADhArmWithAllItsLists) {
   EXPECT_EQ(arm.joints[5].max_jerk, 70.0);
   EXPECT_EQ(file.machine, "xyzac-trt");
   EXPECT_DOUBLE_EQ(file.redundant_gamma_rad, arms::pi / 6.0);
-  EXPECT_DOUBLE_EQ(file.cell.tool_length_m, 0.1);
+  EXPECT_DOUBLE_EQ(file.robot.tool_length_m, 0.1);
   ASSERT_EQ(file.start_joints.size(), 6U);
   for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(file.start_joints[static_cast<std::size_t>(i)], at(i), 1e-15);
   EXPECT_TRUE(file.notes.empty());
@@ -104,7 +104,7 @@ TEST(CellToml, ReadsTheTorqueThatDrivesCanGive) {
   const Folder folder;
   const auto read = [&](const std::string& row) {
     return read_cell(folder.file("cell.toml", with("joint_rotor_inertia_kg_m2 = [6, 5, 4, 3, 2, 1]", row)))
-        .cell.arm.joints;
+        .robot.arm.joints;
   };
   const std::vector<robot::Joint> joints = read("joint_max_torque_n_m = [9000, 8000, 6000, 1500, 1200, 0]");
   EXPECT_EQ(joints[0].max_torque, 9000.0);
@@ -122,7 +122,7 @@ TEST(CellToml, ReadsTheTorqueThatDrivesCanGive) {
 
 TEST(CellToml, ReadsLinksInTheFrameOfTheirRow) {
   const Folder folder;
-  const robot::Link link = read_cell(folder.file("cell.toml", good)).cell.arm.joints[0].link;
+  const robot::Link link = read_cell(folder.file("cell.toml", good)).robot.arm.joints[0].link;
   EXPECT_EQ(link.mass_kg, 300.0);
   // Row 1: Tz(0.4494) Tx(0.35) Rx(-90 deg), which takes (x, y, z) to (x + 0.35, z, 0.4494 - y).
   EXPECT_LT((link.center_m - Eigen::Vector3d(0.25, 0.0, 0.3994)).norm(), 1e-14);
@@ -133,7 +133,7 @@ TEST(CellToml, ReadsLinksInTheFrameOfTheirRow) {
 
 TEST(CellToml, TurnsTheWorkpieceAboutXThenYThenZ) {
   const Folder folder;
-  const Eigen::Isometry3d workpiece = read_cell(folder.file("cell.toml", good)).cell.workpiece;
+  const Eigen::Isometry3d workpiece = read_cell(folder.file("cell.toml", good)).robot.workpiece;
   EXPECT_LT((workpiece.translation() - Eigen::Vector3d(1.27, 0.0, 0.776)).norm(), 1e-15);
   const double x = arms::pi / 18.0, y = arms::pi / 9.0;
   Eigen::Matrix3d rx, ry, rz;
@@ -152,12 +152,12 @@ const std::string urdf = R"(<robot name="one"><link name="base"/><link name="arm
 // The tool's axis is -z of the spindle frame: bolted on sideways it lies across the flange's z.
 TEST(CellToml, BoltsTheSpindleToTheFlange) {
   const Folder folder;
-  const robot::Cell plain = read_cell(folder.file("plain.toml", good)).cell;
+  const robot::Cell plain = read_cell(folder.file("plain.toml", good)).robot;
   const robot::Cell bolted =
       read_cell(folder.file("bolted.toml", with("length_mm = 100",
                                                 "length_mm = 100\nmount_origin_mm = [0, 80, 150]\n"
                                                 "mount_rotation_deg = [0, -90, 0]")))
-          .cell;
+          .robot;
   const Eigen::VectorXd q = arms::kr210_posture();
   const Eigen::Isometry3d flange = robot::forward(plain.arm, q);
   const Eigen::Isometry3d spindle = robot::forward(bolted.arm, q);
@@ -206,14 +206,14 @@ TEST(CellToml, ReadsAUrdfBesideItAndItsListsStandFirst) {
                                               "[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tool0\"\n"
                                               "urdf_base = \"base\"\njoint_max_velocity = 1.5\n"
                                               "base_origin_mm = [0, 0, 500]\nbase_rotation_deg = [0, 0, 90]\n"));
-  ASSERT_EQ(file.cell.arm.joints.size(), 1U);
-  EXPECT_EQ(file.cell.arm.joints[0].max_position, 1.0);
-  EXPECT_EQ(file.cell.arm.joints[0].max_velocity, 1.5);
-  EXPECT_LT((forward(file.cell.arm, Eigen::VectorXd::Zero(1)).translation() - Eigen::Vector3d(0.0, 1.0, 0.5)).norm(),
+  ASSERT_EQ(file.robot.arm.joints.size(), 1U);
+  EXPECT_EQ(file.robot.arm.joints[0].max_position, 1.0);
+  EXPECT_EQ(file.robot.arm.joints[0].max_velocity, 1.5);
+  EXPECT_LT((forward(file.robot.arm, Eigen::VectorXd::Zero(1)).translation() - Eigen::Vector3d(0.0, 1.0, 0.5)).norm(),
             1e-15);
   EXPECT_EQ(file.machine, "");
   EXPECT_TRUE(file.start_joints.empty());
-  EXPECT_TRUE(file.cell.workpiece.isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(file.robot.workpiece.isApprox(Eigen::Isometry3d::Identity()));
 }
 
 TEST(CellToml, SaysHowProgramsAreRead) {
@@ -276,7 +276,7 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
 TEST(CellToml, TakesJointLimitsWithTheirUnit) {
   const Folder folder;
   const auto joints = [&](const std::string& text) {
-    return read_cell(folder.file("cell.toml", text)).cell.arm.joints;
+    return read_cell(folder.file("cell.toml", text)).robot.arm.joints;
   };
   const std::vector<robot::Joint> plain = joints(good);
   std::string degrees = good;
@@ -328,7 +328,7 @@ TEST(CellToml, MixedMachinesGiveAListForEachKindOfJoint) {
 <limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>)");
   const auto read = [&](const std::string& rows) {
     return read_cell(folder.file("cell.toml", "[robot]\nurdf = \"mixed.urdf\"\nurdf_tip = \"d\"\n" + rows))
-        .cell.arm.joints;
+        .robot.arm.joints;
   };
   const std::vector<robot::Joint> joints = read(
       "joint_max_velocity_mm_per_s = [500, 250]\njoint_max_velocity_deg_per_s = [180]\n"
@@ -460,9 +460,9 @@ TEST(CellToml, PlacesTheLinksOfItsGeometry) {
   Random random(3);
   for (int k = 0; k < 20; ++k) {
     const Eigen::VectorXd position = arms::random_position(random, 6);
-    const Eigen::Isometry3d pose = arms::link_frame(file.cell.arm, 2, position) * upper_arm.pose;
+    const Eigen::Isometry3d pose = arms::link_frame(file.robot.arm, 2, position) * upper_arm.pose;
     robot::Posture posture;
-    posture.update(file.cell.arm, position);
+    posture.update(file.robot.arm, position);
     EXPECT_LT((pose * upper_arm.capsule->from_m - posture.origin_m.col(1)).norm(), 1e-12);
     EXPECT_LT((pose * upper_arm.capsule->to_m - posture.origin_m.col(2)).norm(), 1e-12);
   }
@@ -487,7 +487,7 @@ TEST(CellToml, DamagedFilesAreReadOrRejected) {
   for (int k = 0; k < seeds(2000); ++k) {
     const auto path = folder.file("cell.toml", test_support::damaged(good, k, random));
     try {
-      read_cell(path).cell.validate();
+      read_cell(path).robot.validate();
       ++read;
     } catch (const InvalidInput&) {
       continue;

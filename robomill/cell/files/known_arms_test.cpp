@@ -82,7 +82,7 @@ TEST(KnownArms, AreTheirMakersUrdfs) {
     const arms::MakerArm maker = as_taken(urdf);
     names.push_back(maker.name);
     const CellFile file = read_cell(cell_of(maker.name));
-    const robot::Arm& arm = file.cell.arm;
+    const robot::Arm& arm = file.robot.arm;
     ASSERT_EQ(arm.size(), 6) << maker.name;
     double worst = 0.0;
     for (int k = 0; k < 200; ++k) {
@@ -129,7 +129,7 @@ TEST(KnownArms, HaveLimitsOfTheirOwn) {
   std::vector<std::pair<std::string, std::vector<double>>> limits;
   for (const KnownArm& known : known_arms()) {
     const CellFile file = read_cell(cell_of(known.name));
-    const std::vector<robot::Joint>& joints = file.cell.arm.joints;
+    const std::vector<robot::Joint>& joints = file.robot.arm.joints;
     const bool collaborative = known.name.starts_with("ur-");  // turns twice about each joint but the elbow
     for (const std::size_t k : {1U, 2U, 4U}) {
       const double turn = collaborative && k != 2 ? 720.0 : 360.0;
@@ -164,9 +164,9 @@ TEST(KnownArms, HoldTheirOwnWeight) {
   Random random(10);
   for (const KnownArm& known : known_arms()) {
     const CellFile file = read_cell(cell_of(known.name));
-    const robot::Arm& arm = file.cell.arm;
+    const robot::Arm& arm = file.robot.arm;
     const auto expect_held = [&](const robot::Arm& loaded, const Eigen::VectorXd& at) {
-      const std::vector<robot::JointLoad> loads = robot::joint_loads(loaded, at, robot::tip_point(file.cell));
+      const std::vector<robot::JointLoad> loads = robot::joint_loads(loaded, at, robot::tip_point(file.robot));
       for (std::size_t k = 0; k < loads.size(); ++k) {
         if (arm.joints[k].max_torque > 0.0) {
           EXPECT_LE(std::abs(loads[k].gravity), arm.joints[k].max_torque) << known.name << k;
@@ -194,7 +194,7 @@ TEST(KnownArms, HaveTheInertiasThatTheySay) {
     const CellFile file = read_cell(cell_of(known.name));
     if (!assumes(file, "robot.links")) continue;
     const double radius_m = 0.05 * rated(known).reach_m;
-    for (const robot::Joint& joint : file.cell.arm.joints) {
+    for (const robot::Joint& joint : file.robot.arm.joints) {
       const double expected = joint.link.mass_kg * radius_m * radius_m;
       EXPECT_NEAR(joint.link.inertia_kg_m2.trace() / 3.0, expected, 0.05 * expected) << known.name;
     }
@@ -206,9 +206,9 @@ TEST(KnownArms, PointTheirToolOutOfTheFlange) {
   for (const KnownArm& known : known_arms()) {
     const CellFile file = read_cell(cell_of(known.name));
     const Eigen::VectorXd home = Eigen::Map<const Eigen::VectorXd>(file.home.data(), 6);
-    const Eigen::Isometry3d flange = robot::forward(file.cell.arm, home);
+    const Eigen::Isometry3d flange = robot::forward(file.robot.arm, home);
     EXPECT_LT((flange.linear().col(2) + Eigen::Vector3d::UnitZ()).norm(), 1e-9) << known.name << ": home points down";
-    const robot::ToolPose tool = robot::tool_pose(file.cell, flange);
+    const robot::ToolPose tool = robot::tool_pose(file.robot, flange);
     EXPECT_LT((tool.axis - Eigen::Vector3d::UnitZ()).norm(), 1e-9) << known.name;
   }
 }
@@ -235,7 +235,7 @@ TEST(KnownArms, SayWhatIsAssumed) {
       by_name(folder, "kuka-kr210-r2700",
               "joint_max_jerk_deg_per_s3 = [1, 2, 3, 4, 5, 6]\njoint_max_acceleration = [1, 1, 1, 1, 1, 1]\n");
   EXPECT_EQ(keys(own), (std::vector<std::string>{"robot.links"}));
-  EXPECT_NEAR(own.cell.arm.joints[5].max_jerk, 6.0 * units::deg, 1e-15);
+  EXPECT_NEAR(own.robot.arm.joints[5].max_jerk, 6.0 * units::deg, 1e-15);
   EXPECT_EQ(own.assumed[0].file, "cell.toml");
   const CellFile marked =
       by_name(folder, "kuka-kr210-r2700",
@@ -250,10 +250,10 @@ TEST(KnownArms, GiveTheirArmToACell) {
     const CellFile whole = read_cell(cell_of(known.name)), named = by_name(folder, known.name);
     const Eigen::VectorXd at = arms::random_position(random, 6);
     const Eigen::Matrix4d apart =
-        robot::forward(whole.cell.arm, at).matrix() - robot::forward(named.cell.arm, at).matrix();
+        robot::forward(whole.robot.arm, at).matrix() - robot::forward(named.robot.arm, at).matrix();
     EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-14) << known.name;
     for (std::size_t i = 0; i < 6; ++i) {
-      const robot::Joint &ours = named.cell.arm.joints[i], &theirs = whole.cell.arm.joints[i];
+      const robot::Joint &ours = named.robot.arm.joints[i], &theirs = whole.robot.arm.joints[i];
       EXPECT_EQ(ours.min_position, theirs.min_position);
       EXPECT_EQ(ours.max_acceleration, theirs.max_acceleration);
       EXPECT_EQ(ours.stiffness, theirs.stiffness);
@@ -263,7 +263,7 @@ TEST(KnownArms, GiveTheirArmToACell) {
     EXPECT_EQ(named.model, known.name);
     EXPECT_EQ(named.home, whole.start_joints);
     EXPECT_TRUE(named.start_joints.empty()) << "where it begins is the cell's to say";
-    EXPECT_TRUE(named.cell.workpiece.isApprox(Eigen::Isometry3d::Identity())) << "as is where the workpiece stands";
+    EXPECT_TRUE(named.robot.workpiece.isApprox(Eigen::Isometry3d::Identity())) << "as is where the workpiece stands";
   }
 }
 
@@ -271,15 +271,15 @@ TEST(KnownArms, StandWhereTheCellPutsThem) {
   const Folder folder;
   Random random(9);
   const Eigen::VectorXd at = arms::random_position(random, 6);
-  const Eigen::Isometry3d plain = robot::forward(by_name(folder, "kuka-kr210-r2700").cell.arm, at);
+  const Eigen::Isometry3d plain = robot::forward(by_name(folder, "kuka-kr210-r2700").robot.arm, at);
   const CellFile hanging =
       by_name(folder, "kuka-kr210-r2700",
               "base_origin_mm = [0, 0, 3000]\nbase_rotation_deg = [180, 0, 0]\n"
               "joint_stiffness_n_m_per_rad = [1, 2, 3, 4, 5, 6]\nstart_joints_deg = [0, -90, 90, 0, 30, 0]\n");
   const Eigen::Isometry3d turned =
       Eigen::Translation3d(0.0, 0.0, 3.0) * Eigen::AngleAxisd(arms::pi, Eigen::Vector3d::UnitX()) * plain;
-  EXPECT_LT((robot::forward(hanging.cell.arm, at).matrix() - turned.matrix()).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(hanging.cell.arm.joints[3].stiffness, 4.0);
+  EXPECT_LT((robot::forward(hanging.robot.arm, at).matrix() - turned.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(hanging.robot.arm.joints[3].stiffness, 4.0);
   EXPECT_EQ(hanging.home, hanging.start_joints);
 }
 

@@ -120,7 +120,7 @@ std::string document(const CoefficientsResult& result, Format format) {
   return cutting::slot_fit_json(result.fit, result.file, result.assumed);
 }
 std::string document(const StiffnessResult& result, Format format) {
-  const robot::Arm& arm = result.cell.cell.arm;
+  const robot::Arm& arm = result.cell.robot.arm;
   if (format == Format::csv) return robot::stiffness_csv(result.found, arm);
   if (format == Format::toml) return robot::stiffness_toml(result.found, arm);
   return robot::stiffness_json(result.found, arm, result.loads);

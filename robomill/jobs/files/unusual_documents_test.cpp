@@ -235,7 +235,7 @@ TEST(UnusualDocuments, AreWarnedOfInTables) {
                                          notes));
   EXPECT_NE(joined(notes).find("tools.csv:3: length_mm = 60000 mm; is unusual"), std::string::npos) << joined(notes);
 
-  const robot::Arm arm = cell::read_cell(source / "data/cells/kuka-kr210-r2700.toml", cell::Robots::any).cell.arm;
+  const robot::Arm arm = cell::read_cell(source / "data/cells/kuka-kr210-r2700.toml", cell::Robots::any).robot.arm;
   const std::string head = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n";
   const robot::LoadsFile loads =
       robot::read_loads(folder.file("loads.csv", head + "0.312,-0.871,1.934,0.208,0.777,0.05,300,0,0,150,0,0\n"), arm);

@@ -281,7 +281,7 @@ std::string cell_document(const std::string& robot, bool example) {
   };
   for (const char* key : {"workpiece.origin_mm", "tool.length_mm"}) take(key);
   // What the arm has anyway stands there to be changed.
-  const robot::Arm arm = cell::read_cell(io::TomlSource(robot + ".toml", std::string(cell))).cell.arm;
+  const robot::Arm arm = cell::read_cell(io::TomlSource(robot + ".toml", std::string(cell))).robot.arm;
   for (const ShownList& list : shown_lists) {
     text = io::with_setting(text, {.key = list.key, .value = values_of(arm, list)});
     text = commented_out(std::move(text), list.key);

@@ -17,7 +17,7 @@ std::array<bool, 3> pushed_axes(const ForcesResult& forces) {
   std::array<bool, 3> out = {true, true, true};
   if (forces.cut.cutter.kind != cutting::CutterKind::flat_end) return out;
   const program::Program& program = forces.program->program;
-  const Eigen::Matrix3d base_from_work = forces.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = forces.cell->robot.workpiece.linear();
   const double upright = std::cos(5.0 * units::deg);
   out = {false, false, false};
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
@@ -34,7 +34,7 @@ std::array<bool, 3> pushed_axes(const ForcesResult& forces) {
 DynamicsAt dynamics_of_cell(const cell::Cell& cell, const std::array<bool, 3>& pushed,
                             std::vector<std::string>& warnings, std::vector<std::string>& notes,
                             std::vector<Assumption>& assumed, Progress& progress) {
-  if (cell.postures.empty() && !cell::vibrates(cell.cell.arm)) {
+  if (cell.postures.empty() && !cell::vibrates(cell.robot.arm)) {
     throw InvalidInput(cell.path.string(), "does not say what vibrates",
                        "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
                        "joint_damping_n_m_s_per_rad");

@@ -30,7 +30,7 @@ double greatest_error_m(const ForcesResult& forces, std::size_t block, const mod
   const double speed = forces.program->blocks[block].force.spindle_speed_rad_per_s;
   const stability::LobesProblem problem = block_problem({.setup = forces.cut,
                                                          .cut = cut,
-                                                         .base_from_work = forces.cell->cell.workpiece.linear(),
+                                                         .base_from_work = forces.cell->robot.workpiece.linear(),
                                                          .spindle_speed_rad_per_s = speed},
                                                         modes);
   const Eigen::Vector3d tip_m = forces.program->program.blocks[block].end.tip_m;

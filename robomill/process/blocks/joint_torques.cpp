@@ -24,7 +24,7 @@ class TorqueSampler {
     const BlockResult& row = forces_.program->blocks[block];
     load = {.joints = std::vector<robot::JointLoadRange>(arm_.joints.size()), .cuts = judged.cuts};
     if (!row.joints.allFinite()) return;  // the robot cannot stand there
-    const Eigen::Vector3d tip_m = robot::tip_point(forces_.cell->cell);
+    const Eigen::Vector3d tip_m = robot::tip_point(forces_.cell->robot);
     std::vector<robot::Wrench> wrenches(1);
     if (judged.cuts) {
       const cutting::PoseEngagement& cut = forces_.program->cuts[block];
@@ -32,7 +32,7 @@ class TorqueSampler {
                          {.feed_per_tooth_m = row.force.feed_per_tooth_m,
                           .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s},
                          revolution_);
-      const Eigen::Matrix3d base_from_feed = forces_.cell->cell.workpiece.linear() * cut.work_from_feed;
+      const Eigen::Matrix3d base_from_feed = forces_.cell->robot.workpiece.linear() * cut.work_from_feed;
       wrenches.clear();
       for (const auto& force : revolution_.force_n.colwise()) wrenches.push_back({.force_n = base_from_feed * force});
     }

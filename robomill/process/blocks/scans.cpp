@@ -21,7 +21,7 @@ constexpr std::array<const char*, 4> scan_parameters = {"x_mm", "y_mm", "z_mm", 
 
 std::vector<LimitScan> limit_scans(const ForcesResult& forces, std::size_t block, const DynamicsAt& dynamics,
                                    const BlocksOptions& options) {
-  const robot::Cell& cell = forces.cell->cell;
+  const robot::Cell& cell = forces.cell->robot;
   const BlockResult& row = forces.program->blocks[block];
   const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
   const BlockCut cut = {.setup = forces.cut,

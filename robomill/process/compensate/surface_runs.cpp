@@ -67,7 +67,7 @@ std::vector<cutting::BlockForce> SurfaceRuns::cut_once(const program::Program& p
 
 void SurfaceRuns::sort_cuts(const std::vector<cutting::BlockForce>& forces) {
   Classes classes(options_.alike);
-  const Eigen::Matrix3d base_from_work = forces_.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = forces_.cell->robot.workpiece.linear();
   cut_of_.assign(forces.size(), no_cut);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const cutting::PoseEngagement& cut = engaged_[i];
@@ -102,7 +102,7 @@ void SurfaceRuns::for_cuts(F&& f) {
 }
 
 void SurfaceRuns::find_structures(const std::vector<cutting::BlockForce>& forces) {
-  const Eigen::Matrix3d base_from_work = forces_.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = forces_.cell->robot.workpiece.linear();
   cuts_.assign(first_.size(), {});
   for_cuts([&](std::size_t k, Cut& cut) {
     const std::size_t block = first_[k];

@@ -59,7 +59,7 @@ std::vector<double> gamma_offsets(const program::Program& program, const Program
 
 Stands joints_at(const ForcesResult& forces, const program::Program& program,
                  const std::vector<double>& gamma_offset_rad) {
-  const robot::Cell& cell = forces.cell->cell;
+  const robot::Cell& cell = forces.cell->robot;
   const program::Program& before = forces.program->program;
   const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
   Stands out;

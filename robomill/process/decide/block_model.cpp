@@ -47,7 +47,7 @@ BlockModel::BlockModel(const DecideProblem& problem, Progress& progress)
               .chip_m = chips_m(problem, units),
               .checker = checker_.get(),
               .posture_free = problem.options.is_free(Free::gamma) || (problem.options.leans_free() && checker_),
-              .inverse = spherical_wrist(problem.forces.cell->cell.arm)};
+              .inverse = spherical_wrist(problem.forces.cell->robot.arm)};
   line_of_.assign(problem.blocks.rows.size(), no_line);
   for (std::size_t k = 0; k < units.lines.size(); ++k) {
     for (std::size_t i = units.lines[k].first_block; i <= units.lines[k].last_block; ++i) line_of_[i] = k;

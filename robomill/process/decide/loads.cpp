@@ -59,7 +59,7 @@ class LoadSampler {
 
  private:
   [[nodiscard]] Eigen::Matrix3d compliance_of(const Eigen::VectorXd& joints) const {
-    const robot::Cell& cell = forces_.cell->cell;
+    const robot::Cell& cell = forces_.cell->robot;
     const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints, robot::tip_point(cell));
     const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
     return base_from_work.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * base_from_work;

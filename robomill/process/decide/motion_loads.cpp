@@ -13,7 +13,7 @@ namespace robomill::process {
 bool knows_torques(const cell::Cell& cell) {
   const robot::Arm arm = cell::loaded_arm(cell);
   const std::vector<robot::JointLoad> loads = robot::joint_loads(
-      arm, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.size())), robot::tip_point(cell.cell));
+      arm, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.size())), robot::tip_point(cell.robot));
   for (std::size_t k = 0; k < loads.size(); ++k) {
     if (loads[k].status == robot::JointLoad::Status::known && arm.joints[k].max_torque > 0.0) return true;
   }
@@ -22,7 +22,7 @@ bool knows_torques(const cell::Cell& cell) {
 
 MotionLoads::MotionLoads(const cell::Cell& cell, double sample_period_s, std::vector<std::size_t> block_of)
     : arm_(cell::loaded_arm(cell)),
-      tip_m_(robot::tip_point(cell.cell)),
+      tip_m_(robot::tip_point(cell.robot)),
       period_s_(sample_period_s),
       block_of_(std::move(block_of)) {}
 

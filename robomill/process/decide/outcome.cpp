@@ -53,7 +53,7 @@ void of_motion(const JudgedRun& run, std::size_t block, double chip_m, double le
   for (const double most : {options.max_feed_m_per_s, run.problem.max_tip_speed_m_per_s}) {
     if (most > 0.0) add_if_broken(out, {{ProgramLimit::tip_speed, feed, most}, block});
   }
-  const std::vector<robot::Joint>& joints = run.forces.cell->cell.arm.joints;
+  const std::vector<robot::Joint>& joints = run.forces.cell->robot.arm.joints;
   Violation fastest = {{.limit = ProgramLimit::joint_speed}, block};
   for (std::size_t k = 0; k < joints.size() && block > 0; ++k) {
     const auto joint = static_cast<Eigen::Index>(k);
@@ -109,7 +109,7 @@ void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 
   of_motion(run, block, chip, options.chip_thickness_m[0], out);
   of_cutting_speed(run, block, out);
   of_spindle(problem, load, block, out);
-  const double share = greatest_torque_share(forces.cell->cell.arm, torques[block]);
+  const double share = greatest_torque_share(forces.cell->robot.arm, torques[block]);
   add_if_broken(out, {{ProgramLimit::joint_torque, share, 1.0}, block});
   if (!problem.options.avoid_reversals) return;
   if (std::ranges::find(reversals, block, &robot::LoadReversal::block) != reversals.end()) {
@@ -172,7 +172,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.sustained_power_w = std::max(out.sustained_power_w, load.force.sustained_power_w);
     out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
     out.greatest_torque_share =
-        std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));
+        std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->robot.arm, torques[i]));
     out.peak_vibration_m = std::fmax(out.peak_vibration_m, row.steady.vibration.amplitude_m);
     out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, left_surface_error_m(forces, row));
   }

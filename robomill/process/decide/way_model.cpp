@@ -46,7 +46,7 @@ JointSpeed joint_speed(const ForcesResult& forces, std::size_t block) {
   const program::Program& program = forces.program->program;
   const double way_m = (program.blocks[block].end.tip_m - program.begin_of(block).tip_m).norm();
   const Eigen::VectorXd turn = forces.program->blocks[block].joints - forces.program->blocks[block - 1].joints;
-  const std::vector<robot::Joint>& joints = forces.cell->cell.arm.joints;
+  const std::vector<robot::Joint>& joints = forces.cell->robot.arm.joints;
   for (Eigen::Index k = 0; k < turn.size(); ++k) {
     const double most = joints[static_cast<std::size_t>(k)].max_velocity;
     if (!(most > 0.0) || !(std::abs(turn(k)) > 0.0)) continue;
@@ -84,7 +84,7 @@ WayModel::WayModel(const WaySetting& setting, const ForcesResult& forces, Progra
 
 void WayModel::sort_into_classes() {
   const ProgramForces& program = *forces_.program;
-  const Eigen::Matrix3d base_from_work = forces_.cell->cell.workpiece.linear();
+  const Eigen::Matrix3d base_from_work = forces_.cell->robot.workpiece.linear();
   Classes classes(look_tolerance);
   class_of_.assign(program.blocks.size(), no_class);
   for (std::size_t line = 0; line < units_.lines.size(); ++line) {
@@ -225,7 +225,7 @@ const WayModel::Stand& WayModel::stand(std::size_t look_class, double gamma_rad)
     const std::scoped_lock lock(mutex_);
     if (const auto found = stands_.find(key); found != stands_.end()) return found->second;
   }
-  const robot::Cell& cell = forces_.cell->cell;
+  const robot::Cell& cell = forces_.cell->robot;
   const Eigen::VectorXd& programmed = forces_.program->blocks[first_[look_class]].joints;
   Stand out;
   std::optional<Eigen::VectorXd> joints = programmed;
@@ -247,7 +247,7 @@ const WayModel::Stand& WayModel::stand(std::size_t look_class, double gamma_rad)
 BlockCut WayModel::cut_at(std::size_t look_class, double speed) const {
   return {.setup = forces_.cut,
           .cut = forces_.program->cuts[first_[look_class]],
-          .base_from_work = forces_.cell->cell.workpiece.linear(),
+          .base_from_work = forces_.cell->robot.workpiece.linear(),
           .spindle_speed_rad_per_s = speed,
           .tolerance = setting_.problem->blocks_options.tolerance};
 }
