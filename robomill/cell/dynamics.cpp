@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cell/arm_modes.hpp"
+#include "robomill/cell/files/calibration_document.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -232,6 +233,34 @@ Eigen::Vector3d mean_deviation(const modal::PostureModel& model, const std::vect
   return sum / static_cast<double>(postures.size());
 }
 
+/// The arm's model; calibrated as an earlier run did where the cell's calibration document is of these inputs, which is
+/// else replaced.
+/// @param notes  of the document
+std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
+                                                    const std::vector<modal::MeasuredPosture>& postures,
+                                                    const modal::PostureModelOptions& options,
+                                                    std::vector<std::string>& notes, Progress& progress) {
+  const std::optional<robot::Link> payload = payload_of(cell);
+  if (postures.empty()) return std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress);
+  const CalibrationDocument document(cell.path, modal::calibration_fingerprint(cell.robot, payload, postures, options));
+  const std::optional<modal::PostureCalibration> kept = document.read(notes);
+  auto model = std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress,
+                                                     kept ? &*kept : nullptr);
+  bool in_place = kept && !model->searched();
+  if (model->searched()) {
+    if (kept) {
+      notes.push_back(
+          fmt::format("The calibration is made anew: that in {} does not have the error that it states.",
+                      document.name()));
+    }
+    in_place = document.write(*model->calibration(), notes);
+  }
+  if (in_place) {
+    notes.push_back(fmt::format("The calibration is kept in {} until its inputs change.", document.name()));
+  }
+  return model;
+}
+
 }  // namespace
 
 CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
@@ -240,8 +269,9 @@ CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
   std::vector<modal::MeasuredPosture> postures;
   for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out));
   const modal::PostureModelOptions options;
+  std::vector<std::string> of_document;
   try {
-    out.model = std::make_shared<modal::PostureModel>(cell.robot, payload_of(cell), postures, options, progress);
+    out.model = model_of(cell, postures, options, of_document, progress);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     if (parts.field == "cell") parts.field = cell.path.string();
@@ -259,6 +289,7 @@ CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
   if (report.source == modal::PostureReport::Source::calibrated) {
     out.direct_deviation = mean_deviation(*out.model, postures);
     out.notes.push_back(description(report));
+    std::ranges::move(of_document, std::back_inserter(out.notes));
   }
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
   add_assumed(out.assumed, assumed_damping(cell, report));

@@ -17,6 +17,11 @@
 
 namespace robomill::modal {
 
+struct PostureCalibration;  // not installed: what a calibration's search found, for files
+namespace detail {
+class PostureSource;
+}
+
 /// What was measured at the tool's tip in one posture, in the robot's base axes: FRFs or modes.
 struct MeasuredPosture {
   std::string name = {};                 ///< for messages: "postures[3]", a file
@@ -78,12 +83,14 @@ class ROBOMILL_API PostureModel {
   ///     interpolated
   /// @param payload   what hangs on the flange beside the last link, in flange axes
   /// @param measured  may be empty
+  /// @param kept      what the search of an earlier model of the same inputs found: the same model without the search.
+  ///     Where it is not of them, the search is done
   /// @throws InvalidInput naming the posture: a position of another length or outside the joints' limits, FRFs with
   ///     other names or another band than the first's, nothing at the tip; neither a model nor measurements;
   ///     Interrupted
   PostureModel(const robot::Cell& cell, const std::optional<robot::Link>& payload,
                const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options = {},
-               Progress& progress = Progress::none());
+               Progress& progress = Progress::none(), const PostureCalibration* kept = nullptr);
   ~PostureModel();
   PostureModel(PostureModel&&) noexcept;
   PostureModel& operator=(PostureModel&&) noexcept;
@@ -99,12 +106,14 @@ class ROBOMILL_API PostureModel {
   /// @throws InvalidInput as at
   [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const;
   [[nodiscard]] const PostureReport& report() const;
+  /// Nothing where there was nothing to search for.
+  [[nodiscard]] std::optional<PostureCalibration> calibration() const;
+  /// Whether there was a search.
+  [[nodiscard]] bool searched() const { return searched_; }
 
  private:
-  class Source;
-  std::unique_ptr<Source> source_;
-  class Calibrated;
-  class Interpolated;
+  std::unique_ptr<detail::PostureSource> source_;
+  bool searched_ = false;
 };
 
 }  // namespace robomill::modal

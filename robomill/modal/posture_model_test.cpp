@@ -7,10 +7,12 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/modal/posture/posture_calibration.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/pose.hpp"
 #include "testing/modal/posture_judge.hpp"
@@ -82,6 +84,70 @@ TEST(PostureModel, PredictsPosturesThatWereNotMeasured) {
     EXPECT_LT(testing::quantile(score.frequency_error, 0.9), 0.04) << "arm " << seed;
     EXPECT_GT(score.frequencies_in_band, 0.75 * score.banded) << "arm " << seed;
   }
+}
+
+/// Every bit of what two models say of a posture.
+void expect_the_same(const PostureModel& one, const PostureModel& other, const Eigen::VectorXd& joints) {
+  const ModalModel a = one.at(joints).modes, b = other.at(joints).modes;
+  ASSERT_EQ(a.modes.size(), b.modes.size());
+  for (std::size_t k = 0; k < a.modes.size(); ++k) {
+    EXPECT_EQ(a.modes[k].frequency_hz, b.modes[k].frequency_hz);
+    EXPECT_EQ(a.modes[k].damping_ratio, b.modes[k].damping_ratio);
+    EXPECT_EQ(a.modes[k].left, b.modes[k].left);
+    EXPECT_EQ(a.modes[k].frequency_std_hz, b.modes[k].frequency_std_hz);
+    EXPECT_EQ(a.modes[k].damping_ratio_std, b.modes[k].damping_ratio_std);
+    EXPECT_EQ(a.modes[k].residue_std_ratio, b.modes[k].residue_std_ratio);
+  }
+  for (std::size_t k = 0; k < a.residuals.size(); ++k) {
+    EXPECT_EQ(a.residuals[k].stiffness, b.residuals[k].stiffness);
+  }
+  EXPECT_EQ(one.direct_deviation(joints), other.direct_deviation(joints));
+}
+
+TEST(PostureModel, IsTheSameFromWhatAnEarlierSearchFound) {
+  const testing::SimulatedArm arm(1);
+  const std::vector<MeasuredPosture> measured = hit(arm, {.force_in_z = false, .line_spacing_hz = 4.0});
+  const PostureModel first(arm.told(), {}, measured);
+  EXPECT_TRUE(first.searched());
+  const std::optional<PostureCalibration> found = first.calibration();
+  ASSERT_TRUE(found.has_value());
+  const PostureModel again(arm.told(), {}, measured, {}, Progress::none(), &*found);
+  EXPECT_FALSE(again.searched());
+  for (const Eigen::VectorXd& joints : arm.held_out_postures()) expect_the_same(first, again, joints);
+  const PostureReport &a = first.report(), &b = again.report();
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.left_out_error, b.left_out_error);
+  EXPECT_EQ(a.bracket, b.bracket);
+  EXPECT_EQ(a.tool_modes, b.tool_modes);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_EQ(a.direct[axis].error, b.direct[axis].error);
+    EXPECT_EQ(a.direct[axis].left_out_error, b.direct[axis].left_out_error);
+    EXPECT_EQ(a.direct[axis].held_out_error, b.direct[axis].held_out_error);
+  }
+}
+
+// Numbers of other measurements, or of another structure, do not give the error that they state.
+TEST(PostureModel, SearchesAnewWhereWhatIsKeptIsNotOfItsInputs) {
+  const testing::SimulatedArm arm(0);
+  std::vector<MeasuredPosture> measured = with_modes(arm);
+  measured.resize(1);
+  const PostureModel model(arm.told(), {}, measured);
+  const PostureCalibration found = *model.calibration();
+  const auto searches = [&](const PostureCalibration& kept) {
+    return PostureModel(arm.told(), {}, measured, {}, Progress::none(), &kept).searched();
+  };
+  EXPECT_FALSE(searches(found));
+  const auto changed = [&](const auto& change) {
+    PostureCalibration out = found;
+    change(out);
+    return out;
+  };
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.common(0) += 1e-3; })));
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.common.conservativeResize(3); })));
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.differing = Eigen::MatrixXd::Ones(2, 1); })));
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.structure.bearings = !kept.structure.bearings; })));
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.error *= 1.001; })));
+  EXPECT_TRUE(searches(changed([](PostureCalibration& kept) { kept.common.setConstant(1e30); })));
 }
 
 /// What a spindle that deflects along its axis adds to every receptance of the tip, in base axes: a a^T / (k - m w^2 +

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <complex>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -8,7 +9,20 @@
 #include "robomill/modal/posture/flexible_arm.hpp"
 #include "robomill/modal/posture/smoothed_frf.hpp"
 
+namespace robomill::modal {
+struct PostureCalibration;
+}
+
 namespace robomill::modal::detail {
+
+/// What postures that are left out, each predicted from the others, show of a calibration.
+struct LeftOutPostures {
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< mean |ΔH| / |H|; NaN below three postures
+  Eigen::Vector3d direct = Eigen::Vector3d::Zero();         ///< Σ |ΔH| / Σ |H| of xx, yy, zz; 0: not measured
+  Eigen::Vector3d predicted = Eigen::Vector3d::Zero();      ///< what the covariance makes of it
+  /// Factors on the predicted deviations of ln f, ζ and residues.
+  double frequency_scale = 1.0, damping_scale = 1.0, residue_scale = 1.0;
+};
 
 /// θ, u and their joint deviations: a Gaussian about the least cost.
 struct Calibration {
@@ -18,11 +32,7 @@ struct Calibration {
   Eigen::MatrixXd covariance;           ///< of (θ, u posture by posture)
   double error = 0.0;                   ///< mean |ΔH| / |H|
   double noise = 0.0;                   ///< variance of a residual, of 5 % of the receptance each
-  double left_out_error = 0.0;
-  Eigen::Vector3d left_out_direct = Eigen::Vector3d::Zero();     ///< Σ |ΔH| / Σ |H| of xx, yy, zz; 0: not measured
-  Eigen::Vector3d left_out_predicted = Eigen::Vector3d::Zero();  ///< what the covariance makes of it
-  /// Factors on the predicted deviations of ln f, ζ and residues, from left-out postures.
-  double frequency_scale = 1.0, damping_scale = 1.0, residue_scale = 1.0;
+  LeftOutPostures left_out = {};
 };
 
 /// The parameters of a posture as the calibration predicts them.
@@ -37,7 +47,8 @@ struct PostureParameters {
 /// Receptances of all postures at every stage of the search: with much added damping first, with hardly any last.
 class CalibrationData {
  public:
-  explicit CalibrationData(const std::vector<PostureData>& postures);
+  enum class Stages { all, last };
+  explicit CalibrationData(const std::vector<PostureData>& postures, Stages wanted = Stages::all);
   [[nodiscard]] std::size_t size() const { return joints_.size(); }
   [[nodiscard]] const std::vector<Eigen::VectorXd>& joints() const { return joints_; }
   [[nodiscard]] const std::vector<SmoothedFrf>& stage(std::size_t i) const { return stages_[i]; }
@@ -65,6 +76,11 @@ struct CalibrationChoice {
 };
 [[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz,
                                     const CalibrationChoice& choice, const Beginning& beginning, Progress& progress);
+
+/// The same as calibrate() came to before, without its search. Nothing where `kept` is not of that arm and that data:
+/// sizes differ, or the error.
+[[nodiscard]] std::optional<Calibration> again(const FlexibleArm& arm, const CalibrationData& data, bool varying,
+                                               const PostureCalibration& kept);
 
 /// @param joints  of the measured postures
 [[nodiscard]] PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,

@@ -33,7 +33,7 @@ bool is_damping(Kind kind) {
 
 FlexibleArm::FlexibleArm(const robot::Cell& cell, const std::optional<robot::Link>& payload,
                          const ArmStructure& structure, const std::vector<Tool>& tools)
-    : cell_(cell), structure_(structure) {
+    : cell_(cell), structure_(structure), tools_(tools) {
   structure_.tool_modes = static_cast<int>(tools.size());
   const std::size_t n = cell.arm.joints.size();
   for (std::size_t i = 0; i < n; ++i) {

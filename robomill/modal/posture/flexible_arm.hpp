@@ -71,6 +71,7 @@ class FlexibleArm {
 
   [[nodiscard]] const std::vector<ArmParameter>& parameters() const { return parameters_; }
   [[nodiscard]] const ArmStructure& structure() const { return structure_; }
+  [[nodiscard]] const std::vector<Tool>& tools() const { return tools_; }
   [[nodiscard]] Eigen::VectorXd start() const;
   /// Sets the largest gravity torques, which the load is counted from.
   void scale_loads(const std::vector<Eigen::VectorXd>& postures);
@@ -170,6 +171,7 @@ class FlexibleArm {
 
   robot::Cell cell_;
   ArmStructure structure_;
+  std::vector<Tool> tools_;  ///< as they were told
   std::vector<Coordinate> coordinates_;
   std::vector<Group> groups_;
   std::vector<Body> bodies_;
