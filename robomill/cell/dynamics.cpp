@@ -250,8 +250,7 @@ std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
   if (model->searched()) {
     if (kept) {
       notes.push_back(
-          fmt::format("The calibration is made anew: that in {} does not have the error that it states.",
-                      document.name()));
+          fmt::format("The calibration is made anew: {} does not have the error that it states.", document.name()));
     }
     in_place = document.write(*model->calibration(), notes);
   }

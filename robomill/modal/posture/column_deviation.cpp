@@ -2,10 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <span>
+
+#include "robomill/modal/posture/receptance_lines.hpp"
 
 namespace robomill::modal::detail {
 namespace {
@@ -65,23 +69,27 @@ DirectError direct_error(const FlexibleArm::System& system, const SmoothedFrf& f
 Eigen::Vector3d direct_deviation(const FlexibleArm& arm, const FlexibleArm::System& system,
                                  const Eigen::MatrixXd& covariance, const SmoothedFrf& lines) {
   const double mean_of_size = std::sqrt(std::numbers::pi / 4.0);
-  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, covariance.rows()), farther_by(9, covariance.rows());
+  constexpr std::array<std::size_t, 3> direct_entries = {0, 3, 5};
+  FlexibleArm::ReceptanceLines model(arm, system, true);
+  const std::span<const Complex> all = lines.s;
   Eigen::Vector3d deviation = Eigen::Vector3d::Zero(), size = Eigen::Vector3d::Zero();
-  for (const Complex s : lines.s) {
-    Eigen::Matrix3cd value, farther;
-    arm.receptance(system, s, value, derivative);
-    if (s.real() > 0.0) {
-      arm.receptance(system, s + s.real(), farther, farther_by);
-      value = 2.0 * value - farther;
-      derivative = 2.0 * derivative - farther_by;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::RowVectorXcd by = derivative.row(direct_row(axis));
-      const double variance = (by * covariance * by.adjoint()).value().real();
-      // However far a peak moves, it is missed by no more than both its places hold.
-      const double at = std::abs(value(axis, axis));
-      deviation(axis) += std::min(mean_of_size * std::sqrt(std::max(0.0, variance)), 2.0 * at);
-      size(axis) += at;
+  Eigen::RowVectorXcd by(covariance.rows());
+  for (std::size_t first = 0; first < all.size(); first += lane_count) {
+    const std::size_t here = std::min(lane_count, all.size() - first);
+    model.evaluate(all.subspan(first, here));
+    for (std::size_t lane = 0; lane < here; ++lane) {
+      for (std::size_t axis = 0; axis < direct_entries.size(); ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        const std::size_t entry = direct_entries[axis];
+        for (Eigen::Index p = 0; p < by.size(); ++p) {
+          by(p) = model.derivative()[static_cast<std::size_t>(p)].at(entry, lane);
+        }
+        const double variance = (by * covariance * by.adjoint()).value().real();
+        // However far a peak moves, it is missed by no more than both its places hold.
+        const double at = std::abs(model.value().at(entry, lane));
+        deviation(a) += std::min(mean_of_size * std::sqrt(std::max(0.0, variance)), 2.0 * at);
+        size(a) += at;
+      }
     }
   }
   return deviation.cwiseQuotient(size);

@@ -31,6 +31,12 @@ bool is_damping(Kind kind) {
          kind == Kind::tool_damping;
 }
 
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d out;
+  out << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return out;
+}
+
 FlexibleArm::FlexibleArm(const robot::Cell& cell, const std::optional<robot::Link>& payload,
                          const ArmStructure& structure, const std::vector<Tool>& tools)
     : cell_(cell), structure_(structure), tools_(tools) {

@@ -57,6 +57,8 @@ struct ArmParameter {
 
 [[nodiscard]] bool is_stiffness(ArmParameter::Kind kind);  ///< of a spring
 [[nodiscard]] bool is_damping(ArmParameter::Kind kind);    ///< of a damper
+/// A x = a × x.
+[[nodiscard]] Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a);
 
 /// A serial arm with compliant joints that carries a spindle and a tool, M ẍ + C ẋ + K x = Bᵀ F with x the small turns
 /// and displacements of its structure. Rigid bodies and geometry are the cell's; the parameters are those listed.
@@ -110,9 +112,7 @@ class FlexibleArm {
 
   /// H(s), 3 x 3 in B.
   static Eigen::Matrix3cd receptance(const System& system, std::complex<double> s);
-  /// The same with its derivative by every parameter, a column each: the nine entries of ∂H, column by column.
-  void receptance(const System& system, std::complex<double> s, Eigen::Matrix3cd& value,
-                  Eigen::Ref<Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic>> derivative) const;
+  class ReceptanceLines;  // the same at many s, with derivatives
 
   /// Modes up to a frequency at the tip in B, the rest as a compliance.
   struct Modes {
@@ -146,8 +146,7 @@ class FlexibleArm {
     bool loose = false;  ///< a part of a link, told with the rest of it
     robot::Link link;
   };
-  struct Placed;     // where the coordinates act in a posture
-  struct MassTerms;  // what masses do to a receptance
+  struct Placed;  // where the coordinates act in a posture
   void add(ArmParameter::Kind kind, std::size_t index, double start, double deviation, double posture_deviation = 0.0,
            std::size_t axis = 0);
   void split_last_link();

@@ -1,3 +1,4 @@
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -11,8 +12,71 @@ namespace robomill::modal::detail {
 namespace {
 
 using Complex = std::complex<double>;
+using Kind = ArmParameter::Kind;
+
+/// The velocity of a centre that moves out by a unit along an axis of its link, from the angular one.
+template <class Matrix>
+Matrix swung(const FlexibleArm::BodyMotion& body, std::size_t axis, const Matrix& turned) {
+  return -cross_matrix(body.axes.col(static_cast<Eigen::Index>(axis))) * turned;
+}
+
+Eigen::Matrix3cd in_base(const FlexibleArm::System& system) {
+  return (system.flange_axes * system.compliance.asDiagonal() * system.flange_axes.transpose()).cast<Complex>();
+}
+
+Eigen::MatrixXcd dynamic_stiffness(const FlexibleArm::System& system, Complex s) {
+  return s * s * system.mass + s * system.damping + system.stiffness;
+}
 
 }  // namespace
+
+Eigen::Matrix3Xcd FlexibleArm::pivot_change(const System& system, std::size_t axis, const Eigen::MatrixXcd& x) const {
+  // A coordinate about e moves a point p by e x (p - pivot); the bracket's axes are the flange's.
+  return system.flange_axes * cross_matrix(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis))) *
+         x.middleRows(bracket_row_, 3);
+}
+
+Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParameter& parameter,
+                                          const Eigen::MatrixXcd& x) const {
+  Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(x.rows(), x.cols());
+  if (parameter.kind == Kind::rotor_inertia) {
+    const Eigen::Index c = joint_row(parameter.index);
+    out.row(c) = system.rotor(c) * x.row(c);
+    return out;
+  }
+  if (parameter.kind == Kind::tool_mass) {
+    const ToolMotion& tool = system.tools[parameter.index];
+    return tool.mass_kg * (tool.input * (tool.input.transpose() * x));
+  }
+  if (parameter.kind == Kind::bracket_pivot) {
+    const Eigen::Matrix3Xcd moved = pivot_change(system, parameter.index, x);
+    const Eigen::Matrix3d turn =
+        -cross_matrix(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(parameter.index))) * system.flange_axes.transpose();
+    const auto add = [&](double mass, const Eigen::MatrixXd& motion) {  // motion: 3 x n
+      out += mass * (motion.transpose() * moved);
+      out.middleRows(bracket_row_, 3) += mass * (turn * (motion * x));
+    };
+    for (const BodyMotion& body : system.bodies) {
+      if (body.on_bracket) add(body.mass_kg, body.linear);
+    }
+    for (const ToolMotion& tool : system.tools) add(tool.mass_kg, tool.input.transpose());
+    return out;
+  }
+  const BodyMotion& body = system.bodies[parameter.index];
+  const Eigen::MatrixXcd turned = body.turning * x, moved = body.linear * x;
+  if (parameter.kind == Kind::body_center) {
+    const Eigen::Matrix3Xd arm = swung(body, parameter.axis, body.turning);
+    return body.mass_kg * (arm.transpose() * moved + body.linear.transpose() * swung(body, parameter.axis, turned));
+  }
+  out = body.turning.transpose() * (body.inertia * turned);
+  if (parameter.kind == Kind::body_mass) out += body.mass_kg * (body.linear.transpose() * moved);
+  return out;
+}
+
+Eigen::Matrix3cd FlexibleArm::receptance(const System& system, Complex s) {
+  const Eigen::MatrixXcd moved = dynamic_stiffness(system, s).partialPivLu().solve(system.input.cast<Complex>());
+  return system.input.transpose() * moved + in_base(system);
+}
 
 FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) const {
   // In the undamped modes, of which those far above the band are left to the compliance.

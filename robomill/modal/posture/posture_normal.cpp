@@ -1,8 +1,12 @@
 #include "robomill/modal/posture/posture_normal.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <span>
+
+#include "robomill/modal/posture/receptance_lines.hpp"
 
 namespace robomill::modal::detail {
 namespace {
@@ -11,6 +15,43 @@ using Complex = std::complex<double>;
 
 /// Large residuals count less: c² ln(1 + r²/c²).
 constexpr double robust = 4.0;
+
+/// The model is symmetric: the two entries that mirror each other have one row of derivatives.
+constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {1, 3}, {2, 6}, {4, 4}, {5, 7}, {8, 8}}};
+
+/// What a line's entries of one value of the model come to: weighted residual = root · slope · ∂H and this.
+struct Residual {
+  double root = 0.0;    ///< of the weights; 0: not measured
+  Complex slope = 1.0;  ///< of the residual by the model's value
+  Complex value = 0.0;
+};
+
+Residual residual_of(Complex model, const SmoothedFrf& frf, Eigen::Index line, std::size_t pair, PostureNormal& out) {
+  double weights = 0.0;
+  Complex weighted = 0.0, slope = 1.0;
+  const bool on_diagonal = mirrored[pair][0] == mirrored[pair][1];
+  for (std::size_t side = 0; side < (on_diagonal ? 1U : 2U); ++side) {
+    const Eigen::Index e = mirrored[pair][side];
+    const double weight = frf.weight(e, line);
+    if (weight == 0.0) continue;
+    // Logarithms of what lies on the diagonal: too stiff counts as much as too soft.
+    const Complex data = frf.value(e, line);
+    const bool diagonal = on_diagonal && data != 0.0;
+    const Complex miss = diagonal ? std::abs(data) * std::log(model / data) : model - data;
+    if (diagonal) slope = std::abs(data) / model;
+    const double square = std::norm(miss) * weight * weight;
+    out.cost += robust * robust * std::log1p(square / (robust * robust));
+    out.error += std::abs(model - data);
+    out.size += std::abs(data);
+    out.residuals += 2.0;
+    const double counted = weight * weight / (1.0 + square / (robust * robust));
+    weights += counted;
+    weighted += counted * miss;
+  }
+  if (weights == 0.0) return {};
+  const double root = std::sqrt(weights);
+  return {.root = root, .slope = slope, .value = weighted / root};
+}
 
 }  // namespace
 
@@ -21,64 +62,37 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
   PostureNormal out;
   out.matrix = Eigen::MatrixXd::Zero(count, count);
   out.gradient = Eigen::VectorXd::Zero(count);
-  const Eigen::Index lines = static_cast<Eigen::Index>(frf.s.size());
-  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count), derivative_farther(9, count);
-  // The model is symmetric: the two entries that mirror each other have one row of derivatives.
-  constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}}};
-  constexpr Eigen::Index rows_a_line = 12;
+  FlexibleArm::ReceptanceLines model(arm, system, derivatives);
+  const std::span<const Complex> lines = frf.s;
+  constexpr auto lanes = static_cast<Eigen::Index>(lane_count), rows_a_pair = 2 * lanes;
+  constexpr auto rows = static_cast<Eigen::Index>(mirrored.size()) * rows_a_pair;  // of eight lines
+  const auto batches = (static_cast<Eigen::Index>(lines.size()) + lanes - 1) / lanes;
   Eigen::MatrixXd real;
   Eigen::VectorXd residual;
   if (derivatives) {
-    real.setZero(rows_a_line * lines, count);
-    residual.setZero(rows_a_line * lines);
+    real.setZero(rows * batches, count);
+    residual.setZero(rows * batches);
   }
-  for (Eigen::Index i = 0; i < lines; ++i) {
-    Eigen::Matrix3cd value;
-    const Complex s = frf.s[static_cast<std::size_t>(i)];
-    if (derivatives) {
-      arm.receptance(system, s, value, derivative);
-    } else {
-      value = FlexibleArm::receptance(system, s);
-    }
-    if (s.real() > 0.0) {  // 2 H(σ) − H(2σ)
-      Eigen::Matrix3cd farther;
-      if (derivatives) {
-        arm.receptance(system, s + s.real(), farther, derivative_farther);
-        derivative = 2.0 * derivative - derivative_farther;
-      } else {
-        farther = FlexibleArm::receptance(system, s + s.real());
-      }
-      value = 2.0 * value - farther;
-    }
-    const Eigen::Map<const Eigen::Matrix<Complex, 9, 1>> model(value.data());
+  for (Eigen::Index batch = 0; batch < batches; ++batch) {
+    const auto first = static_cast<std::size_t>(batch * lanes);
+    const std::size_t here = std::min(lane_count, lines.size() - first);
+    model.evaluate(lines.subspan(first, here));
     for (std::size_t pair = 0; pair < mirrored.size(); ++pair) {
-      double weights = 0.0;
-      Complex weighted = 0.0, slope = 1.0;
-      for (std::size_t side = 0; side < (mirrored[pair][0] == mirrored[pair][1] ? 1U : 2U); ++side) {
-        const Eigen::Index e = mirrored[pair][side];
-        const double weight = frf.weight(e, i);
-        if (weight == 0.0) continue;
-        // Logarithms of what lies on the diagonal: too stiff counts as much as too soft.
-        const Complex data = frf.value(e, i);
-        const bool diagonal = mirrored[pair][0] == mirrored[pair][1] && data != 0.0;
-        const Complex miss = diagonal ? std::abs(data) * std::log(model(e) / data) : model(e) - data;
-        if (diagonal) slope = std::abs(data) / model(e);
-        const double square = std::norm(miss) * weight * weight;
-        out.cost += robust * robust * std::log1p(square / (robust * robust));
-        out.error += std::abs(model(e) - data);
-        out.size += std::abs(frf.value(e, i));
-        out.residuals += 2.0;
-        const double counted = weight * weight / (1.0 + square / (robust * robust));
-        weights += counted;
-        weighted += counted * miss;
+      const Eigen::Index row = rows * batch + rows_a_pair * static_cast<Eigen::Index>(pair);
+      for (std::size_t lane = 0; lane < here; ++lane) {
+        const auto line = static_cast<Eigen::Index>(first + lane);
+        const Residual one = residual_of(model.value().at(pair, lane), frf, line, pair, out);
+        if (!derivatives || one.root == 0.0) continue;
+        const Eigen::Index at = row + static_cast<Eigen::Index>(lane);
+        residual(at) = one.value.real();
+        residual(at + lanes) = one.value.imag();
+        for (Eigen::Index p = 0; p < count; ++p) {
+          const SymmetricLanes& by = model.derivative()[static_cast<std::size_t>(p)];
+          const double re = by.re[pair].v[lane], im = by.im[pair].v[lane];
+          real(at, p) = one.root * (one.slope.real() * re - one.slope.imag() * im);
+          real(at + lanes, p) = one.root * (one.slope.real() * im + one.slope.imag() * re);
+        }
       }
-      if (!derivatives || weights == 0.0) continue;
-      const double root = std::sqrt(weights);
-      const Eigen::Index row = rows_a_line * i + 2 * static_cast<Eigen::Index>(pair);
-      real.row(row) = root * (slope * derivative.row(mirrored[pair][0])).real();
-      real.row(row + 1) = root * (slope * derivative.row(mirrored[pair][0])).imag();
-      residual(row) = weighted.real() / root;
-      residual(row + 1) = weighted.imag() / root;
     }
   }
   if (!derivatives) return out;
