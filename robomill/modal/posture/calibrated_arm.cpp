@@ -35,8 +35,7 @@ double residue_deviation(const FlexibleArm::Modes& modes, const FlexibleArm::Sen
     sum += residue;
   }
   change = scale.asDiagonal() * change;
-  const double variance = (change * covariance * change.adjoint()).trace().real();
-  return std::sqrt(std::max(0.0, variance)) / sum.norm();
+  return std::sqrt(total_variance(change, covariance)) / sum.norm();
 }
 
 /// A model of the arm, calibrated or as the cell says.

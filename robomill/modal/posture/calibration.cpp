@@ -40,8 +40,7 @@ ModeSpread spread_of(const FlexibleArm& arm, const FlexibleArm::System& system, 
         std::sqrt(std::max(0.0, (by.log_frequency.row(k) * covariance * by.log_frequency.row(k).transpose()).value()));
     out.damping_ratio(k) =
         std::sqrt(std::max(0.0, (by.damping_ratio.row(k) * covariance * by.damping_ratio.row(k).transpose()).value()));
-    const Eigen::MatrixXcd& r = by.residue[static_cast<std::size_t>(k)];
-    out.residue(k) = std::sqrt(std::max(0.0, (r * covariance * r.adjoint()).trace().real()));
+    out.residue(k) = std::sqrt(total_variance(by.residue[static_cast<std::size_t>(k)], covariance));
   }
   return out;
 }
@@ -220,14 +219,20 @@ PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration
   kernel.diagonal().array() += own_share;
   const Eigen::VectorXd weights = kernel.llt().solve(to);
   const double left = 1.0 - to.dot(weights);
-  Eigen::MatrixXd pick = Eigen::MatrixXd::Zero(p, p + d * n);
-  pick.leftCols(p).setIdentity();
+  // φ = θ + Σ_k w_k u_k: of (θ, u), row by row.
+  const auto picked = [&](const Eigen::MatrixXd& of) {
+    Eigen::MatrixXd rows = of.topRows(p);
+    for (Eigen::Index a = 0; a < d; ++a) {
+      for (Eigen::Index k = 0; k < n; ++k) {
+        rows.row(calibration.deviating[static_cast<std::size_t>(a)]) += weights(k) * of.row(p + k * d + a);
+      }
+    }
+    return rows;
+  };
   for (Eigen::Index a = 0; a < d; ++a) {
-    const Eigen::Index row = calibration.deviating[static_cast<std::size_t>(a)];
-    out.mean(row) += calibration.differing.row(a).dot(weights);
-    for (Eigen::Index k = 0; k < n; ++k) pick(row, p + k * d + a) = weights(k);
+    out.mean(calibration.deviating[static_cast<std::size_t>(a)]) += calibration.differing.row(a).dot(weights);
   }
-  out.covariance = pick * calibration.covariance * pick.transpose();
+  out.covariance = picked(picked(calibration.covariance).transpose()).transpose();
   for (Eigen::Index a = 0; a < d; ++a) {
     const Eigen::Index row = calibration.deviating[static_cast<std::size_t>(a)];
     const double s = arm.parameters()[static_cast<std::size_t>(row)].posture_deviation;

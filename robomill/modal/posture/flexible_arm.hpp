@@ -60,6 +60,9 @@ struct ArmParameter {
 /// A x = a × x.
 [[nodiscard]] Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a);
 
+/// tr(J Σ Jᴴ), the variances of J δ together; >= 0. @param by  J @param covariance  Σ of δ
+[[nodiscard]] double total_variance(const Eigen::MatrixXcd& by, const Eigen::MatrixXd& covariance);
+
 /// A serial arm with compliant joints that carries a spindle and a tool, M ẍ + C ẋ + K x = Bᵀ F with x the small turns
 /// and displacements of its structure. Rigid bodies and geometry are the cell's; the parameters are those listed.
 class FlexibleArm {
@@ -164,9 +167,10 @@ class FlexibleArm {
   [[nodiscard]] Eigen::Index joint_row(std::size_t joint) const;
   /// What the tip's input has more as the bracket's pivot moves: ∂Bᵀ x.
   [[nodiscard]] Eigen::Matrix3Xcd pivot_change(const System& system, std::size_t axis, const Eigen::MatrixXcd& x) const;
-  /// ∂M x by a parameter of mass.
+  struct Spanned;  // what modes move
+  /// Yᵀ ∂M X by a parameter of mass, Y the modes and their conjugates, X the modes.
   [[nodiscard]] Eigen::MatrixXcd mass_change(const System& system, const ArmParameter& parameter,
-                                             const Eigen::MatrixXcd& x) const;
+                                             const Spanned& by) const;
 
   robot::Cell cell_;
   ArmStructure structure_;

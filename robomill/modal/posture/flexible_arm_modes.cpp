@@ -14,12 +14,6 @@ namespace {
 using Complex = std::complex<double>;
 using Kind = ArmParameter::Kind;
 
-/// The velocity of a centre that moves out by a unit along an axis of its link, from the angular one.
-template <class Matrix>
-Matrix swung(const FlexibleArm::BodyMotion& body, std::size_t axis, const Matrix& turned) {
-  return -cross_matrix(body.axes.col(static_cast<Eigen::Index>(axis))) * turned;
-}
-
 Eigen::Matrix3cd in_base(const FlexibleArm::System& system) {
   return (system.flange_axes * system.compliance.asDiagonal() * system.flange_axes.transpose()).cast<Complex>();
 }
@@ -36,46 +30,71 @@ Eigen::Matrix3Xcd FlexibleArm::pivot_change(const System& system, std::size_t ax
          x.middleRows(bracket_row_, 3);
 }
 
-Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParameter& parameter,
-                                          const Eigen::MatrixXcd& x) const {
-  Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(x.rows(), x.cols());
-  if (parameter.kind == Kind::rotor_inertia) {
-    const Eigen::Index c = joint_row(parameter.index);
-    out.row(c) = system.rotor(c) * x.row(c);
-    return out;
-  }
-  if (parameter.kind == Kind::tool_mass) {
-    const ToolMotion& tool = system.tools[parameter.index];
-    return tool.mass_kg * (tool.input * (tool.input.transpose() * x));
-  }
-  if (parameter.kind == Kind::bracket_pivot) {
-    const Eigen::Matrix3Xcd moved = pivot_change(system, parameter.index, x);
-    const Eigen::Matrix3d turn =
-        -cross_matrix(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(parameter.index))) * system.flange_axes.transpose();
-    const auto add = [&](double mass, const Eigen::MatrixXd& motion) {  // motion: 3 x n
-      out += mass * (motion.transpose() * moved);
-      out.middleRows(bracket_row_, 3) += mass * (turn * (motion * x));
+/// Modes and their conjugates, and how they move masses.
+struct FlexibleArm::Spanned {
+  Eigen::Index modes = 0;                        // m
+  Eigen::MatrixXcd basis;                        // n x 2m
+  std::vector<Eigen::Matrix3Xcd> moved, turned;  // a body's centre, and its turning, 3 x 2m
+  std::vector<Eigen::Matrix3Xcd> tool;           // a mass of the tool
+
+  Spanned(const System& system, const Eigen::MatrixXcd& shape) : modes(shape.cols()), basis(shape.rows(), 2 * modes) {
+    basis << shape, shape.conjugate();
+    const auto spanned = [&](const Eigen::MatrixXd& motion) {
+      const Eigen::Matrix3Xcd by_modes = motion * shape;
+      Eigen::Matrix3Xcd out(3, 2 * modes);
+      out << by_modes, by_modes.conjugate();
+      return out;
     };
     for (const BodyMotion& body : system.bodies) {
-      if (body.on_bracket) add(body.mass_kg, body.linear);
+      moved.push_back(spanned(body.linear));
+      turned.push_back(spanned(body.turning));
     }
-    for (const ToolMotion& tool : system.tools) add(tool.mass_kg, tool.input.transpose());
-    return out;
+    for (const ToolMotion& mass : system.tools) tool.push_back(spanned(mass.input.transpose()));
   }
-  const BodyMotion& body = system.bodies[parameter.index];
-  const Eigen::MatrixXcd turned = body.turning * x, moved = body.linear * x;
+};
+
+Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParameter& parameter,
+                                          const Spanned& by) const {
+  const Eigen::Index m = by.modes;
+  const std::size_t index = parameter.index;
+  if (parameter.kind == Kind::rotor_inertia) {
+    const Eigen::Index c = joint_row(index);
+    return system.rotor(c) * (by.basis.row(c).transpose() * by.basis.row(c).head(m));
+  }
+  if (parameter.kind == Kind::tool_mass) {
+    return system.tools[index].mass_kg * (by.tool[index].transpose() * by.tool[index].leftCols(m));
+  }
+  if (parameter.kind == Kind::bracket_pivot) {
+    const Eigen::Matrix3Xcd pivot = pivot_change(system, index, by.basis);
+    Eigen::Matrix3Xcd carried = Eigen::Matrix3Xcd::Zero(3, 2 * m);
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+      if (system.bodies[b].on_bracket) carried += system.bodies[b].mass_kg * by.moved[b];
+    }
+    for (std::size_t t = 0; t < system.tools.size(); ++t) carried += system.tools[t].mass_kg * by.tool[t];
+    return carried.transpose() * pivot.leftCols(m) + pivot.transpose() * carried.leftCols(m);
+  }
+  const BodyMotion& body = system.bodies[index];
+  const Eigen::Matrix3Xcd &moved = by.moved[index], &turned = by.turned[index];
   if (parameter.kind == Kind::body_center) {
-    const Eigen::Matrix3Xd arm = swung(body, parameter.axis, body.turning);
-    return body.mass_kg * (arm.transpose() * moved + body.linear.transpose() * swung(body, parameter.axis, turned));
+    // The velocity of a centre that moves out by a unit along an axis of its link.
+    const Eigen::Matrix3Xcd swung =
+        -cross_matrix(body.axes.col(static_cast<Eigen::Index>(parameter.axis))) * turned;
+    return body.mass_kg * (swung.transpose() * moved.leftCols(m) + moved.transpose() * swung.leftCols(m));
   }
-  out = body.turning.transpose() * (body.inertia * turned);
-  if (parameter.kind == Kind::body_mass) out += body.mass_kg * (body.linear.transpose() * moved);
+  Eigen::MatrixXcd out = turned.transpose() * (body.inertia * turned.leftCols(m));
+  if (parameter.kind == Kind::body_mass) out += body.mass_kg * (moved.transpose() * moved.leftCols(m));
   return out;
 }
 
 Eigen::Matrix3cd FlexibleArm::receptance(const System& system, Complex s) {
   const Eigen::MatrixXcd moved = dynamic_stiffness(system, s).partialPivLu().solve(system.input.cast<Complex>());
   return system.input.transpose() * moved + in_base(system);
+}
+
+double total_variance(const Eigen::MatrixXcd& by, const Eigen::MatrixXd& covariance) {
+  Eigen::MatrixXd parts(2 * by.rows(), by.cols());
+  parts << by.real(), by.imag();
+  return std::max(0.0, (parts * covariance).cwiseProduct(parts).sum());
 }
 
 FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) const {
@@ -142,55 +161,54 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
   out.damping_ratio.setZero(m, count);
   out.residue.assign(static_cast<std::size_t>(m), Eigen::MatrixXcd::Zero(9, count));
   // Modes in the band and their conjugates span the shapes' changes; what is beyond is far.
-  const Eigen::Index n = modes.shape.rows();
-  Eigen::MatrixXcd basis(n, 2 * m);
-  basis << modes.shape, modes.shape.conjugate();
+  const Spanned by(system, modes.shape);
   Eigen::VectorXcd poles(2 * m);
   poles << modes.pole, modes.pole.conjugate();
   Eigen::Matrix3Xcd tips(3, 2 * m);
   tips << modes.at_tip, modes.at_tip.conjugate();
+  // ψ' = Σ_j a_j ψ_j with a_j = −(ψ_jᵀ u) / (λ_k − λ_j), a_k from the norm; ψᵀ(C + 2λM)ψ = 1 in state space.
+  std::vector<Eigen::Matrix3Xcd> tip_by_projection(static_cast<std::size_t>(m), -tips);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    Eigen::Matrix3Xcd& to = tip_by_projection[static_cast<std::size_t>(k)];
+    for (Eigen::Index j = 0; j < 2 * m; ++j) to.col(j) *= j == k ? Complex(0.0) : 1.0 / (poles(k) - poles(j));
+  }
+  const Eigen::VectorXcd squared_poles = modes.pole.cwiseProduct(modes.pole);
   for (Eigen::Index p = 0; p < count; ++p) {
     const ArmParameter& parameter = parameters_[static_cast<std::size_t>(p)];
-    if (parameter.kind == ArmParameter::Kind::compliance) continue;
+    if (parameter.kind == Kind::compliance) continue;
     const SpringChange& spring = system.springs[static_cast<std::size_t>(p)];
     const bool mass = spring.count == 0;
-    const Eigen::MatrixXcd moved = mass ? mass_change(system, parameter, modes.shape) : Eigen::MatrixXcd();
-    const Eigen::Matrix3Xcd of_input = parameter.kind == ArmParameter::Kind::bracket_pivot
+    // ψ_jᵀ u, u = (∂K + λ ∂C + λ² ∂M) ψ
+    Eigen::MatrixXcd projected;
+    Eigen::VectorXcd self_norm(m);
+    if (mass) {
+      projected = mass_change(system, parameter, by);
+      self_norm = 2.0 * modes.pole.cwiseProduct(projected.diagonal());
+      projected = projected * squared_poles.asDiagonal();
+    } else {
+      const Eigen::Index r = spring.first, n_rows = spring.count;
+      const Eigen::MatrixXcd all = by.basis.middleRows(r, n_rows), own = all.leftCols(m);
+      const Eigen::MatrixXcd damped = all.transpose() * (spring.damping.topLeftCorner(n_rows, n_rows) * own);
+      projected = all.transpose() * (spring.stiffness.topLeftCorner(n_rows, n_rows) * own) +
+                  damped * modes.pole.asDiagonal();
+      self_norm = damped.diagonal();
+    }
+    const Eigen::Matrix3Xcd of_input = parameter.kind == Kind::bracket_pivot
                                            ? pivot_change(system, parameter.index, modes.shape)
                                            : Eigen::Matrix3Xcd::Zero(3, m);
     for (Eigen::Index k = 0; k < m; ++k) {
-      const Complex pole = modes.pole(k);
-      // u = (∂K + λ ∂C + λ² ∂M) ψ
-      Eigen::VectorXcd projected;
-      Complex self_norm = 0.0;
-      if (mass) {
-        projected = basis.transpose() * moved.col(k) * (pole * pole);
-        self_norm = 2.0 * pole * (modes.shape.col(k).transpose() * moved.col(k)).value();
-      } else {
-        const Eigen::Index r = spring.first, n_rows = spring.count;
-        const Eigen::VectorXcd own = modes.shape.col(k).segment(r, n_rows);
-        const Eigen::MatrixXd damping = spring.damping.topLeftCorner(n_rows, n_rows);
-        projected = basis.middleRows(r, n_rows).transpose() *
-                    (spring.stiffness.topLeftCorner(n_rows, n_rows) * own + pole * (damping * own));
-        self_norm = (own.transpose() * (damping * own)).value();
-      }
-      const Complex shift = -projected(k);  // dλ
+      const Complex pole = modes.pole(k), shift = -projected(k, k);  // dλ
       const double size = std::abs(pole);
       const double d_size = (std::conj(pole) * shift).real() / size;
       out.log_frequency(k, p) = d_size / size;
       out.damping_ratio(k, p) = -shift.real() / size + pole.real() * d_size / (size * size);
-      // ψ' = Σ_j a_j ψ_j with a_j = −(ψ_jᵀ u) / (λ_k − λ_j), a_k from the norm; ψᵀ(C + 2λM)ψ = 1 in state space.
-      Eigen::Vector3cd moved_tip = of_input.col(k);
-      for (Eigen::Index j = 0; j < 2 * m; ++j) {
-        if (j == k) continue;
-        moved_tip += tips.col(j) * (-projected(j) / (poles(k) - poles(j)));
-      }
-      moved_tip += modes.at_tip.col(k) * (-0.5 * self_norm);
       const Eigen::Vector3cd tip = modes.at_tip.col(k);
+      const Eigen::Vector3cd moved_tip = of_input.col(k) +
+                                         tip_by_projection[static_cast<std::size_t>(k)] * projected.col(k) -
+                                         0.5 * self_norm(k) * tip;
       const Eigen::Matrix3cd change = moved_tip * tip.transpose() + tip * moved_tip.transpose();
-      const double norm = tip.squaredNorm();
       out.residue[static_cast<std::size_t>(k)].col(p) =
-          Eigen::Map<const Eigen::Matrix<Complex, 9, 1>>(change.data()) / std::max(norm, 1e-300);
+          Eigen::Map<const Eigen::Matrix<Complex, 9, 1>>(change.data()) / std::max(tip.squaredNorm(), 1e-300);
     }
   }
   return out;

@@ -5,8 +5,12 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <vector>
 
+#include "robomill/base/lanes.hpp"
+#include "robomill/base/random.hpp"
 #include "robomill/modal/posture/posture_normal.hpp"
+#include "robomill/modal/posture/receptance_lines.hpp"
 #include "robomill/modal/posture/smoothed_frf.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "testing/modal/simulated_arm.hpp"
@@ -44,25 +48,86 @@ TEST(FlexibleArm, HasTheMassMatrixOfItsJointsWhereNothingElseGives) {
   }
 }
 
-TEST(FlexibleArm, DifferentiatesItsReceptanceByEveryParameter) {
+/// H(s) by LU with pivots, or 2 H(s) - H(s + Re s).
+Eigen::Matrix3cd smoothed(const FlexibleArm::System& system, Complex s) {
+  const Eigen::Matrix3cd value = FlexibleArm::receptance(system, s);
+  return s.real() > 0.0 ? 2.0 * value - FlexibleArm::receptance(system, s + s.real()) : value;
+}
+
+Eigen::Matrix3cd matrix_of(const SymmetricLanes& lanes, std::size_t lane) {
+  Eigen::Matrix3cd out;
+  const auto entry = [&](std::size_t e) { return lanes.at(e, lane); };
+  out << entry(0), entry(1), entry(2), entry(1), entry(3), entry(4), entry(2), entry(4), entry(5);
+  return out;
+}
+
+// Two methods: LU with pivots, and without in lanes.
+TEST(ReceptanceLines, AreTheReceptanceAtEachOfTheirPoints) {
+  const FlexibleArm arm = whole_arm();
+  Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::VectorXd& joints = simulated().measured_postures()[random.index(10)];
+    const FlexibleArm::System system = arm.at(joints, moved_from_start(arm));
+    FlexibleArm::ReceptanceLines lines(arm, system, false);
+    std::vector<Complex> s(1 + random.index(lane_count));
+    for (Complex& one : s) {
+      const double rate = 2.0 * pi * random.uniform(1.0, 700.0);
+      one = {random.uniform() < 0.3 ? 0.0 : random.uniform(0.01, 0.2) * rate, rate};
+    }
+    lines.evaluate(s);
+    EXPECT_TRUE(lines.derivative().empty());
+    for (std::size_t lane = 0; lane < s.size(); ++lane) {
+      const Eigen::Matrix3cd expected = smoothed(system, s[lane]);
+      EXPECT_LT((matrix_of(lines.value(), lane) - expected).norm(), 1e-11 * expected.norm()) << s[lane];
+    }
+  }
+}
+
+TEST(ReceptanceLines, DifferentiateByEveryParameter) {
   const FlexibleArm arm = whole_arm();
   const Eigen::VectorXd parameters = moved_from_start(arm);
   const Eigen::VectorXd& joints = simulated().measured_postures()[3];
-  const Complex s(20.0, 2.0 * pi * 60.0);
-  Eigen::Matrix3cd value;
-  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, parameters.size());
-  arm.receptance(arm.at(joints, parameters), s, value, derivative);
-  EXPECT_LT((value - FlexibleArm::receptance(arm.at(joints, parameters), s)).norm(), 1e-12 * value.norm());
+  const std::vector<Complex> s = {{20.0, 2.0 * pi * 60.0}, {0.0, 2.0 * pi * 35.0}, {300.0, 2.0 * pi * 500.0}};
+  const FlexibleArm::System system = arm.at(joints, parameters);
+  FlexibleArm::ReceptanceLines lines(arm, system, true);
+  lines.evaluate(s);
+  ASSERT_EQ(lines.derivative().size(), static_cast<std::size_t>(parameters.size()));
   constexpr double step = 1e-5;
   for (Eigen::Index p = 0; p < parameters.size(); ++p) {
     Eigen::VectorXd up = parameters, down = parameters;
     up(p) += step;
     down(p) -= step;
-    const Eigen::Matrix3cd difference =
-        (FlexibleArm::receptance(arm.at(joints, up), s) - FlexibleArm::receptance(arm.at(joints, down), s)) /
-        (2.0 * step);
-    const Eigen::Matrix3cd analytic = Eigen::Map<const Eigen::Matrix3cd>(derivative.col(p).data());
-    EXPECT_LT((difference - analytic).norm(), 1e-5 * analytic.norm() + 1e-8 * value.norm()) << "parameter " << p;
+    for (std::size_t lane = 0; lane < s.size(); ++lane) {
+      const Eigen::Matrix3cd difference =
+          (smoothed(arm.at(joints, up), s[lane]) - smoothed(arm.at(joints, down), s[lane])) / (2.0 * step);
+      const Eigen::Matrix3cd analytic = matrix_of(lines.derivative()[static_cast<std::size_t>(p)], lane);
+      const double size = matrix_of(lines.value(), lane).norm();
+      EXPECT_LT((difference - analytic).norm(), 1e-5 * analytic.norm() + 1e-8 * size) << "parameter " << p;
+    }
+  }
+}
+
+TEST(ReceptanceLines, HaveTheSameBitsWhateverVectorsTheMachineHas) {
+  const FlexibleArm arm = whole_arm();
+  const FlexibleArm::System system = arm.at(simulated().measured_postures()[4], moved_from_start(arm));
+  const std::vector<Complex> s = {{20.0, 400.0}, {0.0, 200.0}, {300.0, 3000.0}, {5.0, 50.0}, {8.0, 90.0}};
+  const auto run = [&](Kernels which) {
+    kernels() = which;
+    FlexibleArm::ReceptanceLines lines(arm, system, true);
+    lines.evaluate(s);
+    kernels() = best_kernels();
+    std::vector<Complex> out;
+    for (std::size_t lane = 0; lane < s.size(); ++lane) {
+      for (std::size_t e = 0; e < 6; ++e) {
+        out.push_back(lines.value().at(e, lane));
+        for (const SymmetricLanes& by : lines.derivative()) out.push_back(by.at(e, lane));
+      }
+    }
+    return out;
+  };
+  const std::vector<Complex> baseline = run(Kernels::baseline);
+  for (const Kernels other : {Kernels::avx2, Kernels::avx512}) {
+    if (other <= best_kernels()) EXPECT_EQ(run(other), baseline);
   }
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+// Every function with vectors in its signature is inlined always, so that no call ever passes one.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace robomill::modal::detail {
 
 using Kind = ArmParameter::Kind;
@@ -65,7 +68,7 @@ struct ComplexLane3 {
 constexpr std::size_t rows[6] = {0, 1, 2, 1, 2, 2}, columns[6] = {0, 0, 0, 1, 1, 2};
 
 /// a − Σ_k u_k l_k
-CORE C less_products(C a, std::size_t count, const Lanes* u, const Lanes* l, std::size_t step, std::size_t lane) {
+CORE C less_products(const C& a, std::size_t count, const Lanes* u, const Lanes* l, std::size_t step, std::size_t lane) {
   V re_re = {}, im_im = {}, re_im = {}, im_re = {};
   for (std::size_t k = 0; k < count; ++k) {
     const C one = load<V>(u + 2 * k, lane), other = load<V>(l + step * k, lane);
