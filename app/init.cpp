@@ -9,7 +9,6 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/jobs/interview.hpp"
-#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -37,21 +36,22 @@ void ask(jobs::Template kind, jobs::InitFiles& files) {
 void print_summary(const jobs::InitFiles& files) {
   for (const jobs::NewFile& file : files.files) fmt::print("wrote {}\n", printable(file.path.string()));
   for (const std::filesystem::path& kept : files.kept) fmt::print("kept  {}\n", printable(kept.string()));
-  print_notes(files.notes, "");
+  for (const std::string& note : files.notes) fmt::print("{}\n", printable(note));
   fmt::print("Run: robomill {}\n", printable(files.next));
 }
 
 }  // namespace
 
-Exit run(const InitCommand& command, const Common& common, Progress& /*progress*/) {
-  const jobs::Template kind = *value_in(jobs::template_names, command.kind);
+Exit run_init(const jobs::VerbJob& job, const Common& common, Progress& /*progress*/) {
+  const jobs::Template kind = value_in(jobs::template_names, job.input().string()).value();
+  const bool interactive = job.flag("interactive");
   jobs::InitFiles files = jobs::init_files({.kind = kind,
                                             .file = common.to_stdout() ? std::string() : common.output,
-                                            .data = command.data,
-                                            .robot = command.robot,
-                                            .example = command.example});
+                                            .data = job.file("data"),
+                                            .robot = job.text("robot"),
+                                            .example = job.flag("example")});
   if (common.to_stdout()) {
-    if (command.interactive) ask(kind, files);
+    if (interactive) ask(kind, files);
     fmt::print("{}", files.files.front().text);
     if (common.quiet) return done;
     for (std::size_t i = 1; i < files.files.size(); ++i) {
@@ -60,7 +60,7 @@ Exit run(const InitCommand& command, const Common& common, Progress& /*progress*
     return done;
   }
   jobs::require_new(files);
-  if (command.interactive) ask(kind, files);
+  if (interactive) ask(kind, files);
   jobs::write_init(files);
   if (common.wants_summary()) print_summary(files);
   return done;

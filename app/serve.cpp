@@ -42,21 +42,24 @@ int work_for_server() {
   return serve::work_for_server(open_broker);
 }
 
-Exit run(const ServeCommand& command, const Common& common, Progress&) {
+Exit run_serve(const jobs::VerbJob& job, const Common& common, Progress&) {
   if (!common.output.empty()) throw InvalidInput("--output", "serve writes nothing by itself", "Leave -o out");
   const std::atomic<bool>& stop = stop_on_signal();
   std::signal(SIGCHLD, SIG_DFL);  // a launcher may ignore it: then nobody would know how a process ended
-  serve::ServeOptions options = command.options;
-  if (!command.token_file.empty()) options.token = token_in(command.token_file);
+  serve::ServeOptions options;
+  if (!job.inputs.empty()) options.folder = job.input();
+  options.host = job.get("host", options.host);
+  options.port = job.get("port", options.port);
+  options.token = job.has("token_file") ? token_in(job.file("token_file")) : job.text("token");
   options.validate();
-  options.memory_bytes = std::uint64_t{1'000'000} * static_cast<std::uint64_t>(command.job_memory_mb);
+  options.memory_bytes = std::uint64_t{1'000'000} * job.get("job_memory_mb", std::uint64_t{0});
   options.worker = {"/proc/self/exe", std::string(serve_worker)};  // this program, also where its file was replaced
   const bool restricted = serve::restrict_to_folder(options.folder);
   options.open_stream = open_broker;
   const serve::Server server(options);
   fmt::print("{}\n", server.address());
   if (!common.quiet) {
-    fmt::print("Serves {}. Ctrl-C ends it.\n", std::filesystem::canonical(command.options.folder).string());
+    fmt::print("Serves {}. Ctrl-C ends it.\n", std::filesystem::canonical(options.folder).string());
     if (!restricted)
       fmt::print("This kernel has no Landlock: only robomill itself sees to it that no file outside is read.\n");
     if (!options.token.empty()) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -13,6 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/pending_names.hpp"
 #include "robomill/io/text.hpp"
 
@@ -107,28 +107,6 @@ const std::atomic<bool>& stop_on_signal() {
   return stop;
 }
 
-void print_notes(const std::vector<std::string>& notes, std::string_view label) {
-  for (const std::string& note : notes) fmt::print("{}{}\n", label, printable(note));
-}
-
-void require_output(const Common& common, jobs::Document document) {
-  if (!common.output.empty() && !common.to_stdout()) jobs::require_output(document, common.output);
-}
-
-void require_output(const Common& common, std::initializer_list<io::Format> formats, const char* rule) {
-  if (common.output.empty() || common.to_stdout()) return;
-  if (std::ranges::find(formats, io::format_of(common.output)) == formats.end())
-    throw InvalidInput(common.output, rule);
-}
-
-void write_output(const Common& common, const std::function<std::string(io::Format)>& text_of) {
-  if (common.to_stdout()) {
-    fmt::print("{}", text_of(io::Format::json));
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, text_of(io::format_of(common.output)));
-  }
-}
-
 bool is_html(const std::filesystem::path& path) {
   return io::lowered(path.extension().string()) == ".html";
 }
@@ -136,11 +114,6 @@ bool is_html(const std::filesystem::path& path) {
 void require_report_place(const std::filesystem::path& path) {
   if (path.empty() || is_html(path) || io::format_of(path) == io::Format::json) return;
   throw InvalidInput(path.string(), "a report is written as .html or .json");
-}
-
-void show(const Common& common, const std::string& summary, const std::function<page::Report()>& page) {
-  if (!common.report.empty()) write_report(common.report, page());
-  if (common.wants_summary()) fmt::print("{}", summary);
 }
 
 void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json) {

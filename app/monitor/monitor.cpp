@@ -22,6 +22,7 @@
 #include "monitor/report.hpp"
 #include "monitor/watch.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/usual_ranges.hpp"
@@ -42,11 +43,8 @@ constexpr double saving_s = 10.0;
 using io::RawFormat;
 using monitor::MonitorEvent;
 
-RawFormat raw_format(const std::string& name) {
-  if (name == "f32") return RawFormat::float32;
-  if (name == "i16") return RawFormat::int16;
-  return name == "csv" ? RawFormat::csv : RawFormat::automatic;
-}
+constexpr Name<RawFormat> raw_formats[] = {
+    {"auto", RawFormat::automatic}, {"f32", RawFormat::float32}, {"i16", RawFormat::int16}, {"csv", RawFormat::csv}};
 
 /// The monitor's input.
 struct Input {
@@ -63,10 +61,10 @@ bool is_file(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, const std::atomic<bool>& ended) {
+Input open_input(const jobs::VerbJob& job, monitor::MonitorFile& file, const std::atomic<bool>& ended) {
   Input input;
-  input.is_stream =
-      command.input.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(command.input, file.mqtt);
+  const std::string place = job.text("input");
+  input.is_stream = place.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(place, file.mqtt);
   if (input.is_stream) {
     input.by_clock = true;
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
@@ -76,20 +74,20 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
     }
     return input;
   }
-  if (command.input.empty()) {
+  if (place.empty()) {
     throw InvalidInput("--input", "is missing, and monitor.toml names no mqtt.topic",
                        "Give a recording, - for standard input, or mqtt://HOST/TOPIC");
   }
-  const RawFormat format = raw_format(command.format);
-  if (command.input == "-") {
+  const RawFormat format = job.word("format", raw_formats).value_or(RawFormat::automatic);
+  if (place == "-") {
     input.name = "standard input";
     input.by_clock = !is_file(STDIN_FILENO);
-    input.can_wait = !command.live;
+    input.can_wait = !job.flag("live");
     input.source = io::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
   } else {
-    input.name = command.input;
-    input.by_clock = std::filesystem::is_fifo(command.input);
-    input.source = io::open_samples(command.input, file.columns, format, &ended);
+    input.name = place;
+    input.by_clock = std::filesystem::is_fifo(place);
+    input.source = io::open_samples(place, file.columns, format, &ended);
   }
   if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = input.source->sample_rate_hz();
   if (file.options.full_scale <= 0.0) file.options.full_scale = input.source->full_scale();
@@ -168,10 +166,10 @@ class Ending {
 };
 
 /// The file with what the command line says in its place.
-monitor::MonitorFile read_config(const MonitorCommand& command) {
-  monitor::MonitorFile file = monitor::read_monitor(command.config);
-  if (!command.record.empty()) file.recording_folder = command.record;
-  if (command.metrics_port) file.metrics_port = *command.metrics_port;
+monitor::MonitorFile read_config(const jobs::VerbJob& job) {
+  monitor::MonitorFile file = monitor::read_monitor(job.input());
+  if (job.has("record")) file.recording_folder = job.file("record");
+  file.metrics_port = job.get("metrics_port", file.metrics_port);
   return file;
 }
 
@@ -194,17 +192,17 @@ std::string blind_summary(const live::MetricValues& m) {
 /// Where what a session finds goes: lines of events, what the terminal shows, the broker, the report.
 class Outlets {
  public:
-  Outlets(const MonitorCommand& command, const Common& common, const monitor::MonitorFile& file, const Input& input)
+  Outlets(const jobs::VerbJob& job, const Common& common, const monitor::MonitorFile& file, const Input& input)
       : common_(&common),
         events_({.place = common.output,
                  .is_stream = input.by_clock,
                  .input = input.name,
-                 .config = command.config.string()}) {
+                 .config = job.input().string()}) {
     if (!common.report.empty()) {
       const std::vector<std::string>& channels = file.columns.channels;
       recorder_.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
     }
-    if (command.watch) watch_.emplace();
+    if (job.flag("watch")) watch_.emplace();
   }
   Outlets(const Outlets&) = delete;
   Outlets& operator=(const Outlets&) = delete;
@@ -307,10 +305,10 @@ void connect(const Input& input, const monitor::MonitorFile& file, live::Session
 
 }  // namespace
 
-Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
-  monitor::MonitorFile file = read_config(command);
+Exit run_monitor(const jobs::VerbJob& job, const Common& common, Progress& progress) {
+  monitor::MonitorFile file = read_config(job);
   std::atomic<bool> ended{false};
-  Input input = open_input(command, file, ended);
+  Input input = open_input(job, file, ended);
   monitor::validate(file);
   const live::AdviceBasis basis = jobs::read_advice_basis(file, progress);
   if (!common.quiet) {
@@ -320,10 +318,10 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     fmt::print(stderr, "{}{}\n", io::warning_label, printable(warning));
   }
   const live::Advisor advisor(basis);
-  Outlets outlets(command, common, file, input);
-  live::Session session(file,
-                        {.every_window = command.every_window, .seconds = command.seconds, .live = input.by_clock},
-                        outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
+  Outlets outlets(job, common, file, input);
+  live::Session session(
+      file, {.every_window = job.flag("every_window"), .seconds = job.get("seconds", 0.0), .live = input.by_clock},
+      outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
   outlets.report_to(session);
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {

@@ -32,7 +32,7 @@ CalibrateResult run_calibrate(const fs::path& recordings, std::uint64_t seed, Pr
 }
 
 std::string calibrated_toml(const CalibrateResult& result, const fs::path& place) {
-  if (result.calibration.status != monitor::Calibration::Status::found) {
+  if (!result.found()) {
     throw InvalidInput("calibration", "is none: " + monitor::reason(result.calibration));
   }
   monitor::MonitorFile file = result.monitor;

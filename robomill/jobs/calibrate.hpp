@@ -15,6 +15,7 @@ namespace robomill::jobs {
 struct CalibrateResult {
   monitor::Calibration calibration;
   monitor::MonitorFile monitor;  ///< recordings.toml's, with the calibrated options
+  [[nodiscard]] bool found() const { return calibration.status == monitor::Calibration::Status::found; }
 };
 
 /// Reads recordings.toml and all its recordings, which run at one rate (the file's, else the first one's), and sets the

@@ -19,6 +19,7 @@ struct SmoothResult;
 
 namespace robomill::jobs {
 
+struct CalibrateResult;
 struct CoefficientsResult;
 struct ExplainResult;
 struct FrfJobResult;
@@ -42,7 +43,8 @@ enum class Document {
   forces,
   coefficients,
   stiffness,
-  cell_check
+  cell_check,
+  calibration
 };
 
 /// Before the work. @throws InvalidInput naming the file if this document is not written with its ending
@@ -79,6 +81,8 @@ void write_document(const std::filesystem::path& path, const CoefficientsResult&
 /// As .toml, a line for cell.toml, only where the stiffness converged.
 void write_document(const std::filesystem::path& path, const StiffnessResult& result);
 void write_document(const std::filesystem::path& path, const cell::CellCheck& result);
+/// As .toml, a detector, only where one was found.
+void write_document(const std::filesystem::path& path, const CalibrateResult& result);
 
 /// Before its receptances are kept for other tools. @throws InvalidInput naming the option if the assembly has no
 /// measured holder

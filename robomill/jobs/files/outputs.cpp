@@ -12,6 +12,7 @@
 #include "robomill/cell/files/check_json.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/cutting/files/slots_csv.hpp"
+#include "robomill/jobs/calibrate.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/frf.hpp"
@@ -24,6 +25,7 @@
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/monitor/files/calibration_json.hpp"
 #include "robomill/process/forces.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/simulation/files/simulation_files.hpp"
@@ -41,7 +43,7 @@ struct Endings {
   const char* rule;
 };
 constexpr Format none = Format::json;
-constexpr std::array<Endings, 11> endings = {
+constexpr std::array<Endings, 12> endings = {
     {{Document::frfs,
       {Format::uff, Format::csv, Format::text, Format::mat},
       "FRFs are written as .uff, .csv, .txt, .mat or .json"},
@@ -60,7 +62,8 @@ constexpr std::array<Endings, 11> endings = {
      {Document::stiffness,
       {Format::csv, Format::toml, none, none},
       "joint stiffness is written as .csv, .json or as .toml, a line for cell.toml"},
-     {Document::cell_check, {none, none, none, none}, "a cell's check is written as .json"}}};
+     {Document::cell_check, {none, none, none, none}, "a cell's check is written as .json"},
+     {Document::calibration, {Format::toml, none, none, none}, "a calibrated detector is written as .toml or .json"}}};
 
 template <class Result>
 void write_text(const std::filesystem::path& path, const Result& result) {
@@ -171,6 +174,10 @@ void write_document(const std::filesystem::path& path, const StiffnessResult& re
 }
 void write_document(const std::filesystem::path& path, const cell::CellCheck& result) {
   write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const CalibrateResult& result) {
+  if (io::format_of(path) == Format::json) return io::write_file(path, monitor::calibration_json(result.calibration));
+  if (result.found()) io::write_file(path, calibrated_toml(result, path));
 }
 
 }  // namespace robomill::jobs

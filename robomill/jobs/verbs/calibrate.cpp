@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
+#include "robomill/base/printable.hpp"
+#include "robomill/jobs/verbs/records.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
-#include "terminal.hpp"
-#include "verbs.hpp"
 
-namespace robomill::app {
+namespace robomill::jobs {
 namespace {
 
 using monitor::Calibration;
@@ -43,34 +43,41 @@ std::string summary_of(const Calibration& calibration) {
   return out;
 }
 
-}  // namespace
-
-Exit run(const CalibrateCommand& command, const Common& common, Progress& progress) {
-  require_output(common, {io::Format::toml}, "a calibrated detector is written as .toml");
-  const jobs::CalibrateResult result = jobs::run_calibrate(command.recordings, common.seed, progress);
-  const std::string json = monitor::calibration_json(result.calibration);
-  const bool found = result.calibration.status == Calibration::Status::found;
-  if (found || common.output == "-") {
-    write_output(common, [&](io::Format format) {
-      return format == io::Format::toml ? jobs::calibrated_toml(result, common.output) : json;
-    });
-  }
-  if (!common.report.empty()) {
+Outcome run_calibrate_verb(const VerbJob& job, Progress& progress) {
+  const CalibrateResult result = run_calibrate(job.input(), job.seed(), progress);
+  const Calibration& calibration = result.calibration;
+  Outcome outcome = {.summary = summary_of(calibration), .json = monitor::calibration_json(calibration)};
+  outcome.page = [notes = result.monitor.notes, summary = outcome.summary, json = outcome.json] {
     page::Report page;
     page.title = "Calibration of the chatter monitor";
-    page.notes = result.monitor.notes;
-    page.summary = summary_of(result.calibration);
+    page.notes = notes;
+    page.summary = summary;
     page.calibration = json;
-    write_report(common.report, page, json);
+    return page;
+  };
+  for (const std::string& note : result.monitor.notes) outcome.summary += printable(note) + "\n";
+  if (!job.output.empty()) write_document(job.output, result);
+  if (!result.found()) {
+    const bool detector = io::format_of(job.output) == io::Format::toml;
+    outcome.shortfall = "not calibrated: " + monitor::reason(calibration) +
+                        (detector ? "; " + job.output.string() + " is not written" : "");
   }
-  if (common.wants_summary()) {
-    fmt::print("{}", summary_of(result.calibration));
-    print_notes(result.monitor.notes, "");
-  }
-  if (found) return done;
-  fmt::print(stderr, "robomill: not calibrated: {}{}\n", monitor::reason(result.calibration),
-             common.output.empty() || common.output == "-" ? "" : "; " + common.output + " is not written");
-  return not_reached;
+  return outcome;
 }
 
-}  // namespace robomill::app
+}  // namespace
+
+Verb calibrate_verb() {
+  return {.name = "calibrate",
+          .purpose = "labelled recordings to the published detector's threshold",
+          .more = "With its ROC curve, half of the recordings to verify.",
+          .example = "calibrate recordings.toml -o monitor.toml",
+          .readme = "robomill/monitor/README.md",
+          .input = file_option("recordings", "recordings.toml: files with labels", "recordings", true),
+          .document = Document::calibration,
+          .report = &page::Report::calibration,
+          .options = {seed_option()},
+          .run = &run_calibrate_verb};
+}
+
+}  // namespace robomill::jobs

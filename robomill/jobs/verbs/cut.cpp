@@ -1,0 +1,207 @@
+#include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/cell/posture_choice.hpp"
+#include "robomill/jobs/coefficients.hpp"
+#include "robomill/jobs/explain.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/simulate.hpp"
+#include "robomill/jobs/verbs/records.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+VerbOption lobes_input() {
+  return file_option("lobes", "lobes.toml", "lobes", true);
+}
+
+Outcome run_lobes_verb(const VerbJob& job, Progress& progress) {
+  return finished(
+      job,
+      run_lobes({.lobes = job.input(), .points = job.points("at"), .compare = job.flag("compare"), .seed = job.seed()},
+                progress));
+}
+
+Outcome run_simulate_verb(const VerbJob& job, Progress& progress) {
+  SimulateJob wanted = {.lobes = job.input(), .point = job.point("at")};
+  wanted.options.seconds = job.get("seconds", wanted.options.seconds);
+  wanted.options.sample_rate_hz = job.get("sample_rate_hz", wanted.options.sample_rate_hz);
+  wanted.options.loss_of_contact = !job.flag("linear");
+  wanted.options.seed = job.seed();
+  return finished(job, run_simulate(wanted, progress));
+}
+
+Outcome run_explain_verb(const VerbJob& job, Progress&) {
+  if (job.has("lobes") != job.has("at")) {
+    throw InvalidInput(job.named(job.has("at") ? "lobes" : "at"), "lobes and at go together",
+                       "The cut says whether its chatter needs the delay");
+  }
+  const ExplainJob wanted = {.peaks = {job.numbers("peaks_hz"), job.get("rpm", 0.0) * units::rpm, job.get("teeth", 0)},
+                             .options = {job.get("tolerance_hz", 1.0), job.get("speed_tolerance_percent", 0.2) / 100.0},
+                             .modes = job.input(),
+                             .lobes = job.file("lobes"),
+                             .point = job.point("at")};
+  if (wanted.point.axial_depth_m < 0.0) {
+    throw InvalidInput(job.named("at"), wanted.point.axial_depth_m / units::mm, "mm", "must be >= 0");
+  }
+  return with_option(job, "tolerance_hz", "tolerance_hz", 1.0, [&] { return finished(job, run_explain(wanted)); });
+}
+
+process::ForcesResult forces_from(const VerbJob& job, Progress& progress) {
+  if (!job.has("posture_deg")) return run_forces(job.input(), job.file("program"), job.file("cell"), progress);
+  process::ForcesFile file = process::read_forces(job.input(), process::ForcesJob::program);
+  if (job.has("cell")) file.cell = job.file("cell");
+  if (file.cell.empty()) throw InvalidInput(job.named("posture_deg"), "goes with a robot", "Give " + job.named("cell"));
+  cell::CellFile cell = cell::read_cell(file.cell);
+  cell::ask_for_posture(cell, job.numbers("posture_deg"));
+  return run_forces(file, job.file("program"), std::move(cell), progress);
+}
+
+Outcome run_forces_verb(const VerbJob& job, Progress& progress) {
+  return with_posture(job, [&] { return finished(job, forces_from(job, progress)); });
+}
+
+Outcome run_coefficients_verb(const VerbJob& job, Progress&) {
+  return finished(job, run_coefficients({.slots = job.input(), .teeth = job.get("teeth", 0)}));
+}
+
+Verb lobes_verb() {
+  return {.name = "lobes",
+          .button = "Compute lobes",
+          .purpose = "modes or FRFs and a cut to stability lobes",
+          .more =
+              "Lobes with error estimates; of a ball end, a bull nose or a drill with lead, tilt and modes in z. "
+              "Sweeps of lead, tilt or step-over.",
+          .example = "lobes lobes.toml --at 6500,0.8 -o lobes.json",
+          .readme = "robomill/stability/README.md",
+          .input = lobes_input(),
+          .output = "lobes.json",
+          .document = Document::lobes,
+          .options = {{.name = "at",
+                       .meaning = "points RPM,MM (degrees where an angle is swept): spectral radius there; may be "
+                                  "repeated",
+                       .takes = Takes::points},
+                      flag_option("compare", "the limits by every method: error against collocation and time"),
+                      seed_option()},
+          .run = &run_lobes_verb};
+}
+
+Verb simulate_verb() {
+  return {.name = "simulate",
+          .button = "Simulate the cut",
+          .purpose = "a cut in the time domain: vibration, forces, the wall, stable or chatter",
+          .example = "simulate lobes.toml --at 6500,0.6 --seconds 2 -o vibration.csv",
+          .readme = "robomill/simulation/README.md",
+          .input = lobes_input(),
+          .output = "vibration.csv",
+          .document = Document::simulation,
+          .options = {{.name = "at",
+                       .meaning = "RPM,MM: spindle speed and axial depth",
+                       .takes = Takes::point,
+                       .required = true},
+                      {.name = "seconds",
+                       .meaning = "how long to cut (default: 2 s)",
+                       .takes = Takes::number,
+                       .unit = "s",
+                       .above = 0},
+                      {.name = "sample_rate_hz",
+                       .meaning = "sample rate of the output (default: 10240 Hz)",
+                       .takes = Takes::number,
+                       .unit = "Hz",
+                       .above = 0},
+                      flag_option("linear", "no loss of contact, as lobes take the cut"),
+                      seed_option()},
+          .run = &run_simulate_verb};
+}
+
+std::vector<VerbOption> explain_options() {
+  return {{.name = "peaks_hz",
+           .meaning = "frequencies of the peaks in Hz: F,F,…",
+           .takes = Takes::numbers,
+           .required = true,
+           .flag = "--peaks",
+           .unit = "Hz",
+           .above = 0,
+           .at_most = 1e6},
+          {.name = "rpm", .meaning = "spindle speed in rpm", .takes = Takes::number, .required = true, .unit = "rpm"},
+          {.name = "teeth",
+           .meaning = "teeth of the cutter",
+           .takes = Takes::whole,
+           .required = true,
+           .at_least = 1,
+           .at_most = 100},
+          {.name = "tolerance_hz",
+           .meaning = "how far a peak may lie from what explains it, or half a mode's width where that is more "
+                      "(default: 1 Hz)",
+           .takes = Takes::number,
+           .unit = "Hz",
+           .above = 0},
+          {.name = "speed_tolerance_percent",
+           .meaning = "by how much the true speed may differ (default: 0.2 %)",
+           .takes = Takes::number,
+           .unit = "%",
+           .at_least = 0,
+           .at_most = 5},
+          file_option("lobes", "lobes.toml of the cut: decides whether its chatter is regenerative", "lobes"),
+          {.name = "at", .meaning = "RPM,MM of the cut, with its lobes.toml", .takes = Takes::point}};
+}
+
+Verb explain_verb() {
+  return {.name = "explain",
+          .button = "Explain measured peaks",
+          .purpose = "measured peaks to what they are: rotation, tooth passing, or chatter and its mode",
+          .example = "explain --peaks 325,667 --rpm 6500 --teeth 3 --modes modes.json",
+          .readme = "robomill/stability/README.md",
+          .input = {.name = "modes",
+                    .meaning = "modes.json or modes.toml",
+                    .takes = Takes::file,
+                    .required = true,
+                    .flag = "--modes",
+                    .kinds = {"modes"}},
+          .output = "explain.json",
+          .document = Document::explanation,
+          .options = explain_options(),
+          .run = &run_explain_verb};
+}
+
+Verb forces_verb() {
+  return {
+      .name = "forces",
+      .button = "Compute forces",
+      .purpose = "a cutter in its cut, or along a program, to cutting forces",
+      .more = "Forces, torque, power and deflection over a revolution, or block by block.",
+      .example = "forces forces.toml -o forces.csv --report forces.html",
+      .readme = "robomill/cutting/README.md",
+      .input = file_option("forces", "forces.toml", "forces", true),
+      .output = "forces.csv",
+      .document = Document::forces,
+      .options = {file_option("program", "an NC program: a row a block in place of one revolution", "program"),
+                  file_option("cell", "cell.toml: the robot that the cut bends", "cell"), posture_option("program")},
+      .run = &run_forces_verb};
+}
+
+Verb coefficients_verb() {
+  return {.name = "coefficients",
+          .button = "Identify coefficients",
+          .purpose = "average forces of slots to cutting force coefficients",
+          .more = "Coefficients with standard deviations.",
+          .example = "coefficients slots.csv --teeth 4 -o coefficients.toml",
+          .readme = "robomill/cutting/README.md",
+          .input = file_option("slots", "slots.csv", "slots", true),
+          .output = "coefficients.toml",
+          .document = Document::coefficients,
+          .options = {{.name = "teeth",
+                       .meaning = "teeth of the cutter (default: 4, listed as assumed)",
+                       .takes = Takes::whole,
+                       .at_least = 1,
+                       .at_most = 100}},
+          .run = &run_coefficients_verb};
+}
+
+}  // namespace
+
+std::vector<Verb> cut_verbs() {
+  return {lobes_verb(), simulate_verb(), explain_verb(), forces_verb(), coefficients_verb()};
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,76 @@
+#pragma once
+// The records of the verbs, by the data that they take, and what their runs have in common.
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "robomill/jobs/pages.hpp"
+#include "robomill/jobs/summary.hpp"
+#include "robomill/jobs/verbs.hpp"
+
+namespace robomill::jobs {
+
+[[nodiscard]] std::vector<Verb> structure_verbs();  ///< hits, FRFs, modes, the tool in its holder
+[[nodiscard]] std::vector<Verb> cut_verbs();        ///< stability, motion and forces of a cut
+[[nodiscard]] std::vector<Verb> robot_verbs();      ///< the robot under load, and along a program
+[[nodiscard]] Verb init_verb();
+[[nodiscard]] Verb plan_verb();
+[[nodiscard]] Verb calibrate_verb();
+[[nodiscard]] std::vector<Verb> program_verbs();  ///< of which app/ has the runs, as of init
+
+[[nodiscard]] inline VerbOption seed_option() {
+  return {.name = "seed", .meaning = "seed of random numbers (default: 1)", .takes = Takes::whole, .at_least = 0};
+}
+[[nodiscard]] inline VerbOption flag_option(std::string_view name, std::string_view meaning) {
+  return {.name = name, .meaning = meaning};
+}
+[[nodiscard]] inline VerbOption file_option(std::string_view name, std::string_view meaning, std::string_view kind,
+                                            bool required = false) {
+  return {.name = name, .meaning = meaning, .takes = Takes::file, .required = required, .kinds = {kind}};
+}
+/// Where an arm begins a program.
+[[nodiscard]] inline VerbOption posture_option(std::string_view needs = {}) {
+  return {.name = "posture_deg",
+          .meaning = "begin the program as near to q1,q2,… as possible, in degrees (default: as at home)",
+          .takes = Takes::numbers,
+          .flag = "--posture",
+          .needs = needs,
+          .unit = "deg"};
+}
+
+/// Of a result that is written already.
+template <class Result>
+Outcome outcome_of(Result result, std::string json = {}) {
+  using jobs::summary;  // a result may bring its own
+  auto kept = std::make_shared<const Result>(std::move(result));
+  return {.shortfall = shortfall(*kept), .summary = summary(*kept), .json = std::move(json), .page = [kept] {
+            return page_of(*kept);
+          }};
+}
+
+/// Writes what was found where the job asks for it.
+template <class Result>
+Outcome finished(const VerbJob& job, Result result) {
+  if (!job.output.empty()) write_document(job.output, result);
+  std::string json = job.wants_json ? document(result, io::Format::json) : std::string();
+  return outcome_of(std::move(result), std::move(json));
+}
+
+/// Does work whose errors about a member are about an option.
+template <class Work>
+auto with_option(const VerbJob& job, std::string_view member, std::string_view option, double unit, Work&& work) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    throw job.about_option(error, member, option, unit);
+  }
+}
+
+/// The same of posture_option().
+template <class Work>
+auto with_posture(const VerbJob& job, Work&& work) {
+  return with_option(job, "--posture", "posture_deg", 1.0, work);
+}
+
+}  // namespace robomill::jobs
