@@ -172,7 +172,9 @@ void Subcommand::add_key(const Verb& verb) {
       std::ranges::find(slots, key_of(verb), [](const Slot& slot) { return command_line_name(slot.option); });
   for (Slot& slot : slots) {
     const bool of_verb = has(verb, slot.option), of_plain = has(group.plain(), slot.option);
-    if (&slot == &*key || of_verb == of_plain) continue;
+    const bool of_all =
+        std::ranges::find(common_options(), slot.option.name, &VerbOption::name) != common_options().end();
+    if (&slot == &*key || of_verb == of_plain || of_all) continue;
     if (of_plain) {
       slot.parsed->excludes(key->parsed);
       continue;
@@ -277,6 +279,7 @@ void CommandLine::Parts::add(VerbGroup group) {
   }
   for (Slot& slot : sub.slots) {
     if (!slot.option.needs.empty()) slot.parsed->needs(sub.find(slot.option.needs)->parsed);
+    if (!slot.option.excludes.empty()) slot.parsed->excludes(sub.find(slot.option.excludes)->parsed);
   }
   std::string footer;
   for (const Verb* const verb : sub.group.verbs) footer += "Example: robomill " + std::string(verb->example) + "\n";

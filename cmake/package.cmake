@@ -33,6 +33,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomill.pc DESTINATION ${CMAKE_INSTAL
 install(EXPORT robomill NAMESPACE robomill:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/robomill FILE robomillTargets.cmake)
 if(TARGET robomill_app)
   install(TARGETS robomill_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set(texts ${CMAKE_CURRENT_BINARY_DIR}/robomill.bash ${CMAKE_CURRENT_BINARY_DIR}/robomill.1)
+  add_custom_command(OUTPUT ${texts} DEPENDS robomill_app COMMAND robomill_app completion bash -o robomill.bash
+    COMMAND robomill_app man -o robomill.1)
+  add_custom_target(robomill_texts ALL DEPENDS ${texts})
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomill.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME robomill OPTIONAL)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomill.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
 endif()
 
 include(CMakePackageConfigHelpers)

@@ -64,6 +64,7 @@ struct VerbOption {
   bool required = false;
   std::string_view flag = {};                               ///< on the command line, where that is not --NAME: "--band"
   std::string_view needs = {};                              ///< the option without which it has no meaning
+  std::string_view excludes = {};                           ///< … and the one beside which it has none
   std::vector<std::string_view> words = {};                 ///< of a word
   std::vector<std::string_view> kinds = {};                 ///< of a file: what the page proposes
   std::string_view unit = {};                               ///< of numbers, for messages; "rpm": a spindle's speed

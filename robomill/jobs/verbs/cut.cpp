@@ -70,8 +70,8 @@ Verb lobes_verb() {
           .button = "Compute lobes",
           .purpose = "modes or FRFs and a cut to stability lobes",
           .more =
-              "Lobes with error estimates; of a ball end, a bull nose or a drill with lead, tilt and modes in z. "
-              "Sweeps of lead, tilt or step-over.",
+              "With error estimates. --at evaluates one point, --compare every method. Of a ball end, a bull nose or a "
+              "drill in three directions, with sweeps of lead, tilt or step-over.",
           .example = "lobes lobes.toml --at 6500,0.8 -o lobes.json",
           .readme = "robomill/stability/README.md",
           .input = lobes_input(),

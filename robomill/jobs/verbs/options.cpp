@@ -230,6 +230,9 @@ io::Json checked_options(const Verb& verb, AskedBy asked_by, const io::Json& opt
     if (!option.needs.empty() && out.contains(option.name) && !out.contains(option.needs)) {
       throw InvalidInput(name, fmt::format("goes with {}", option_name(verb, asked_by, option.needs)));
     }
+    if (!option.excludes.empty() && out.contains(option.name) && out.contains(option.excludes)) {
+      throw InvalidInput(name, fmt::format("does not go with {}", option_name(verb, asked_by, option.excludes)));
+    }
   }
   return out;
 }

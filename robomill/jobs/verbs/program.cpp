@@ -7,7 +7,9 @@ Verb init_verb() {
   return {
       .name = "init",
       .purpose = "a commented file in which what only you know is to be filled in",
-      .more = "Of recorded hits the columns and directions are recognized.",
+      .more =
+          "--example writes one that runs as it is, --interactive asks in shop terms, in any units. Columns and "
+          "directions of recorded hits are guessed.",
       .example = "init job -o job.toml --interactive",
       .readme = "robomill/jobs/README.md",
       .input = {.name = "kind",
@@ -93,7 +95,10 @@ Verb serve_verb() {
                        .meaning = "that whoever asks must know: 16 or more letters and digits; other users of this "
                                   "machine see it in ps",
                        .takes = Takes::text},
-                      {.name = "token_file", .meaning = "a file that has the token alone", .takes = Takes::file},
+                      {.name = "token_file",
+                       .meaning = "a file that has the token alone",
+                       .takes = Takes::file,
+                       .excludes = "token"},
                       {.name = "job_memory_mb",
                        .meaning = "that a job may have (default: half the machine's)",
                        .takes = Takes::whole,
@@ -104,7 +109,7 @@ Verb serve_verb() {
 Verb completion_verb() {
   return {.name = "completion",
           .purpose = "a shell's completion of verbs, options and words",
-          .example = "completion bash -o ~/.local/share/bash-completion/completions/robomill",
+          .example = "completion bash -o robomill.bash",
           .readme = "robomill/jobs/README.md",
           .input = {.name = "shell", .meaning = "the shell", .takes = Takes::word, .required = true, .words = {"bash"}},
           .computes = false};

@@ -244,7 +244,7 @@ TEST_F(JobVerbs, RequestsAreCheckedBeforeTheyWait) {
             std::string::npos);
   EXPECT_NE(with("secnds", 1).find("options.secnds: is no option of simulate. Did you mean seconds?"),
             std::string::npos);
-  EXPECT_NE(with("seconds", -1).find("options.seconds = -1; must be a number > 0"), std::string::npos);
+  EXPECT_NE(with("seconds", -1).find("options.seconds = -1 s; must be > 0"), std::string::npos);
   EXPECT_NE(with("seconds", "long").find("must be a number"), std::string::npos);
   EXPECT_NE(with("at", {6000}).find("options.at = [6000]; must be [spindle speed in rpm"), std::string::npos);
   EXPECT_NE(with("at", {0, 1}).find("must be [spindle speed"), std::string::npos);
