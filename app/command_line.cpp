@@ -272,7 +272,7 @@ void CommandLine::Parts::add(VerbGroup group) {
     const bool of_plain = option == &plain.input || std::ranges::any_of(plain.options, [option](const VerbOption& one) {
                             return &one == option;
                           });
-    sub.add(*option, false, option->required && of_plain);
+    sub.add(*option, false, option->required && !option->job_gives && of_plain);
   }
   for (const Verb* const verb : sub.group.verbs) {
     if (verb != &plain) sub.add_key(*verb);

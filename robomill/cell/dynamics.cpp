@@ -244,8 +244,8 @@ std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
   if (postures.empty()) return std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress);
   const CalibrationDocument document(cell.path, modal::calibration_fingerprint(cell.robot, payload, postures, options));
   const std::optional<modal::PostureCalibration> kept = document.read(notes);
-  auto model = std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress,
-                                                     kept ? &*kept : nullptr);
+  auto model =
+      std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress, kept ? &*kept : nullptr);
   bool in_place = kept && !model->searched();
   if (model->searched()) {
     if (kept) {

@@ -62,6 +62,7 @@ struct VerbOption {
   std::string_view meaning = {};  ///< a line, with its default
   Takes takes = Takes::flag;
   bool required = false;
+  bool job_gives = false;                                   ///< … but where the input is a job.toml
   std::string_view flag = {};                               ///< on the command line, where that is not --NAME: "--band"
   std::string_view needs = {};                              ///< the option without which it has no meaning
   std::string_view excludes = {};                           ///< … and the one beside which it has none

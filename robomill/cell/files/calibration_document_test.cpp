@@ -52,7 +52,8 @@ frf = "tip.csv"
 
 /// What a hammer would measure: one mode a direction.
 std::string frfs() {
-  std::string text = "frequency_hz,xx_re_m_per_n,xx_im_m_per_n,yy_re_m_per_n,yy_im_m_per_n,zz_re_m_per_n,zz_im_m_per_n\n";
+  std::string text =
+      "frequency_hz,xx_re_m_per_n,xx_im_m_per_n,yy_re_m_per_n,yy_im_m_per_n,zz_re_m_per_n,zz_im_m_per_n\n";
   for (int f = 5; f <= 205; f += 5) {
     text += fmt::format("{}", f);
     for (const double mode_hz : {18.0, 24.0, 31.0}) {

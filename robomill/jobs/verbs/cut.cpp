@@ -11,8 +11,15 @@
 namespace robomill::jobs {
 namespace {
 
+/// A document with the tables of a cut, or a job that has them.
+VerbOption cut_input(std::string_view name, std::string_view meaning) {
+  VerbOption input = file_option(name, meaning, name, true);
+  input.kinds.emplace_back("job");
+  return input;
+}
+
 VerbOption lobes_input() {
-  return file_option("lobes", "lobes.toml", "lobes", true);
+  return cut_input("lobes", "lobes.toml, or a job.toml");
 }
 
 Outcome run_lobes_verb(const VerbJob& job, Progress& progress) {
@@ -49,12 +56,13 @@ Outcome run_explain_verb(const VerbJob& job, Progress&) {
 
 process::ForcesResult forces_from(const VerbJob& job, Progress& progress) {
   if (!job.has("posture_deg")) return run_forces(job.input(), job.file("program"), job.file("cell"), progress);
+  const std::filesystem::path program = job.has("program") ? job.file("program") : process::program_of_job(job.input());
   process::ForcesFile file = process::read_forces(job.input(), process::ForcesJob::program);
   if (job.has("cell")) file.cell = job.file("cell");
   if (file.cell.empty()) throw InvalidInput(job.named("posture_deg"), "goes with a robot", "Give " + job.named("cell"));
   cell::CellFile cell = cell::read_cell(file.cell);
   cell::ask_for_posture(cell, job.numbers("posture_deg"));
-  return run_forces(file, job.file("program"), std::move(cell), progress);
+  return run_forces(file, program, std::move(cell), progress);
 }
 
 Outcome run_forces_verb(const VerbJob& job, Progress& progress) {
@@ -172,7 +180,7 @@ Verb forces_verb() {
       .more = "Forces, torque, power and deflection over a revolution, or block by block.",
       .example = "forces forces.toml -o forces.csv --report forces.html",
       .readme = "robomill/cutting/README.md",
-      .input = file_option("forces", "forces.toml", "forces", true),
+      .input = cut_input("forces", "forces.toml, or a job.toml"),
       .output = "forces.csv",
       .document = Document::forces,
       .options = {file_option("program", "an NC program: a row a block in place of one revolution", "program"),

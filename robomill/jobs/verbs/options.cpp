@@ -224,7 +224,7 @@ io::Json checked_options(const Verb& verb, AskedBy asked_by, const io::Json& opt
   }
   for (const VerbOption& option : verb.options) {
     const std::string name = option_name(verb, asked_by, option.name);
-    if (option.required && !out.contains(option.name)) {
+    if (option.required && !option.job_gives && !out.contains(option.name)) {
       throw InvalidInput(name, fmt::format("is missing; {} needs it", verb.name), std::string(option.meaning));
     }
     if (!option.needs.empty() && out.contains(option.name) && !out.contains(option.needs)) {

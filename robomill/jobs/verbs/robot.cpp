@@ -5,6 +5,7 @@
 #include "robomill/cell/dynamics.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cell/posture_choice.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/verbs/records.hpp"
@@ -50,6 +51,9 @@ Outcome run_smooth_verb(const VerbJob& job, Progress& progress) {
                                         .keep_violations = job.flag("keep_violations"),
                                         .record = job.wants_curves,
                                         .program_period_s = job.get("program_period_ms", 0.0) * units::ms}};
+  if (wanted.cell.empty() && io::format_of(wanted.program) != io::Format::toml) {
+    throw InvalidInput(job.named("cell"), "is missing; smooth needs it beside a program", "A job.toml names its own");
+  }
   process::SmoothResult result = with_posture(job, [&] {
     return with_option(job, "program_period_s", "program_period_ms", units::ms,
                        [&] { return run_smooth(wanted, progress); });
@@ -125,6 +129,12 @@ Verb posture_modes_verb() {
           .run = &run_posture_modes_verb};
 }
 
+VerbOption smooth_cell() {
+  VerbOption cell = file_option("cell", "cell.toml: the robot, its joints' limits, [smoothing]", "cell", true);
+  cell.job_gives = true;
+  return cell;
+}
+
 Verb smooth_verb() {
   return {.name = "smooth",
           .button = "Smooth the program",
@@ -134,10 +144,11 @@ Verb smooth_verb() {
               "has [geometry].",
           .example = "smooth part.ngc --cell cell.toml -o trajectory.csv --report smooth.html",
           .readme = "robomill/path/README.md",
-          .input = file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls, .csv", "program", true),
+          .input =
+              file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls, .csv; or a job.toml", "program", true),
           .output = "trajectory.csv",
           .report = &page::Report::smooth,
-          .options = {file_option("cell", "cell.toml: the robot, its joints' limits, [smoothing]", "cell", true),
+          .options = {smooth_cell(),
                       {.name = "method",
                        .meaning = "method (default: the cell's)",
                        .takes = Takes::word,

@@ -106,9 +106,10 @@ class CalibratedArm final : public PostureSource {
         return std::sqrt(std::max(0.0, (row * parameters.covariance * row.transpose()).value()));
       };
       const double unmeasured = unmeasured_share(modes.at_tip.col(k));
-      mode.frequency_std_hz =
-          mode.frequency_hz * widened(calibration_.left_out.frequency_scale, unmeasured) * deviation(by.log_frequency.row(k));
-      mode.damping_ratio_std = widened(calibration_.left_out.damping_scale, unmeasured) * deviation(by.damping_ratio.row(k));
+      mode.frequency_std_hz = mode.frequency_hz * widened(calibration_.left_out.frequency_scale, unmeasured) *
+                              deviation(by.log_frequency.row(k));
+      mode.damping_ratio_std =
+          widened(calibration_.left_out.damping_scale, unmeasured) * deviation(by.damping_ratio.row(k));
       mode.residue_std_ratio = residue_deviation(modes, by, parameters.covariance, entry_scale(), k);
       normalise(mode);
       out.modes.push_back(std::move(mode));
@@ -278,7 +279,8 @@ class CalibratedArm final : public PostureSource {
     for (int axis = 0; axis < 3; ++axis) {
       PostureReport::Direct& direct = report.direct[static_cast<std::size_t>(axis)];
       if (!direct.measured) continue;
-      const HeldOut out = hold_out(*arm_, *data_, highest_hz_, varying(), {.parameters = calibration_.common, .noise = calibration_.noise}, axis, progress);
+      const HeldOut out = hold_out(*arm_, *data_, highest_hz_, varying(),
+                                   {.parameters = calibration_.common, .noise = calibration_.noise}, axis, progress);
       direct.held_out_error = out.error;
       unmeasured_scale_ = std::clamp(out.error / out.predicted, unmeasured_scale_, largest_scale);
     }

@@ -28,11 +28,8 @@ class PostureSource {
 /// A model of the arm, calibrated or as the cell says.
 /// @param kept      of an earlier search for the same inputs, or null; where it is not of them the search is done
 /// @param searched  set to whether there was a search
-[[nodiscard]] std::unique_ptr<PostureSource> calibrated_arm(const robot::Cell& cell,
-                                                            const std::optional<robot::Link>& payload,
-                                                            const std::vector<MeasuredPosture>& measured,
-                                                            const PostureModelOptions& options,
-                                                            const PostureCalibration* kept, bool& searched,
-                                                            Progress& progress);
+[[nodiscard]] std::unique_ptr<PostureSource> calibrated_arm(
+    const robot::Cell& cell, const std::optional<robot::Link>& payload, const std::vector<MeasuredPosture>& measured,
+    const PostureModelOptions& options, const PostureCalibration* kept, bool& searched, Progress& progress);
 
 }  // namespace robomill::modal::detail

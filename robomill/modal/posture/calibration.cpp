@@ -211,8 +211,7 @@ PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration
   Eigen::VectorXd to(n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) {
-      kernel(a, b) =
-          posture_kernel(postures[static_cast<std::size_t>(a)], postures[static_cast<std::size_t>(b)]);
+      kernel(a, b) = posture_kernel(postures[static_cast<std::size_t>(a)], postures[static_cast<std::size_t>(b)]);
     }
     to(a) = posture_kernel(postures[static_cast<std::size_t>(a)], joints);
   }

@@ -134,16 +134,16 @@ CalibrationSearch::LeftOut CalibrationSearch::without(std::size_t posture) const
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(damping > 0.0 ? assemble(true, 0.0, posture) : precision);
   const Eigen::MatrixXd pick = picked(posture);
-  return {.parameters = parameters_of(common, differing, posture),
-          .covariance = pick * factor.solve(pick.transpose())};
+  return {.parameters = parameters_of(common, differing, posture), .covariance = pick * factor.solve(pick.transpose())};
 }
 
 PostureNormal CalibrationSearch::evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters,
-                                        bool derivatives) const {
+                                             bool derivatives) const {
   return normal_of(arm_, data_.joints()[posture], (*frfs_)[posture], parameters, derivatives);
 }
 
-Eigen::VectorXd CalibrationSearch::refined(std::size_t posture, const Eigen::VectorXd& predicted, PostureNormal at) const {
+Eigen::VectorXd CalibrationSearch::refined(std::size_t posture, const Eigen::VectorXd& predicted,
+                                           PostureNormal at) const {
   Eigen::VectorXd now = predicted;
   const auto cost = [&](const PostureNormal& normal, const Eigen::VectorXd& where) {
     return normal.cost / noise_ + (where - predicted).cwiseAbs2().dot(prior_);
@@ -177,7 +177,7 @@ Eigen::MatrixXd CalibrationSearch::covariance() const {
 }
 
 Eigen::VectorXd CalibrationSearch::parameters_of(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
-                                            std::size_t posture) const {
+                                                 std::size_t posture) const {
   Eigen::VectorXd out = common;
   for (std::size_t d = 0; d < deviating_.size(); ++d) {
     out(deviating_[d]) += differing(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(posture));
@@ -196,7 +196,7 @@ void CalibrationSearch::evaluate() {
 }
 
 double CalibrationSearch::trial_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
-                                std::size_t left_out) const {
+                                     std::size_t left_out) const {
   std::vector<double> costs(active_.size(), 0.0);
   parallel_for(active_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -209,7 +209,8 @@ double CalibrationSearch::trial_cost(const Eigen::VectorXd& common, const Eigen:
   return std::isfinite(cost) ? cost + prior_cost(common, differing) : std::numeric_limits<double>::infinity();
 }
 
-double CalibrationSearch::total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing, std::size_t left_out) const {
+double CalibrationSearch::total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
+                                std::size_t left_out) const {
   double cost = prior_cost(common, differing);
   for (const std::size_t k : active_) {
     if (k != left_out) cost += normals_[k].cost / noise_;
@@ -242,8 +243,7 @@ Eigen::MatrixXd CalibrationSearch::assemble(bool with_differing, double damping,
       out.col(at + a).head(p) += matrix.col(deviating_[static_cast<std::size_t>(a)]);
       out.row(at + a).head(p) += matrix.row(deviating_[static_cast<std::size_t>(a)]);
       for (Eigen::Index b = 0; b < d; ++b) {
-        out(at + a, at + b) +=
-            matrix(deviating_[static_cast<std::size_t>(a)], deviating_[static_cast<std::size_t>(b)]);
+        out(at + a, at + b) += matrix(deviating_[static_cast<std::size_t>(a)], deviating_[static_cast<std::size_t>(b)]);
       }
     }
   }

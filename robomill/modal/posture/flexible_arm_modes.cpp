@@ -77,8 +77,7 @@ Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParamet
   const Eigen::Matrix3Xcd &moved = by.moved[index], &turned = by.turned[index];
   if (parameter.kind == Kind::body_center) {
     // The velocity of a centre that moves out by a unit along an axis of its link.
-    const Eigen::Matrix3Xcd swung =
-        -cross_matrix(body.axes.col(static_cast<Eigen::Index>(parameter.axis))) * turned;
+    const Eigen::Matrix3Xcd swung = -cross_matrix(body.axes.col(static_cast<Eigen::Index>(parameter.axis))) * turned;
     return body.mass_kg * (swung.transpose() * moved.leftCols(m) + moved.transpose() * swung.leftCols(m));
   }
   Eigen::MatrixXcd out = turned.transpose() * (body.inertia * turned.leftCols(m));
@@ -189,8 +188,8 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
       const Eigen::Index r = spring.first, n_rows = spring.count;
       const Eigen::MatrixXcd all = by.basis.middleRows(r, n_rows), own = all.leftCols(m);
       const Eigen::MatrixXcd damped = all.transpose() * (spring.damping.topLeftCorner(n_rows, n_rows) * own);
-      projected = all.transpose() * (spring.stiffness.topLeftCorner(n_rows, n_rows) * own) +
-                  damped * modes.pole.asDiagonal();
+      projected =
+          all.transpose() * (spring.stiffness.topLeftCorner(n_rows, n_rows) * own) + damped * modes.pole.asDiagonal();
       self_norm = damped.diagonal();
     }
     const Eigen::Matrix3Xcd of_input = parameter.kind == Kind::bracket_pivot

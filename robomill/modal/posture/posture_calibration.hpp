@@ -11,8 +11,8 @@
 
 namespace robomill::modal {
 
-/// What the search of a calibration found. A PostureModel of the same inputs is made from it again, bit for bit, without
-/// the search.
+/// What the search of a calibration found. A PostureModel of the same inputs is made from it again, bit for bit,
+/// without the search.
 struct PostureCalibration {
   detail::ArmStructure structure = {};
   std::vector<detail::FlexibleArm::Tool> tools = {};  ///< where the search for the chain of spindle and tool started

@@ -68,7 +68,8 @@ struct ComplexLane3 {
 constexpr std::size_t rows[6] = {0, 1, 2, 1, 2, 2}, columns[6] = {0, 0, 0, 1, 1, 2};
 
 /// a − Σ_k u_k l_k
-CORE C less_products(const C& a, std::size_t count, const Lanes* u, const Lanes* l, std::size_t step, std::size_t lane) {
+CORE C less_products(const C& a, std::size_t count, const Lanes* u, const Lanes* l, std::size_t step,
+                     std::size_t lane) {
   V re_re = {}, im_im = {}, re_im = {}, im_re = {};
   for (std::size_t k = 0; k < count; ++k) {
     const C one = load<V>(u + 2 * k, lane), other = load<V>(l + step * k, lane);
@@ -243,7 +244,8 @@ CORE void mass(const FlexibleArm::ReceptanceLines::Work& w, const Term& term, co
     both = true;
   } else {
     const FlexibleArm::BodyMotion& body = w.system.bodies[term.index];
-    const C3 moved = load3<V>(w.bodies + 36 * term.index, lane), turned = load3<V>(w.bodies + 36 * term.index + 18, lane);
+    const C3 moved = load3<V>(w.bodies + 36 * term.index, lane),
+             turned = load3<V>(w.bodies + 36 * term.index + 18, lane);
     const C3 other = times<V>(term.one, turned);
     if (term.change == Change::body_center) {
       left = other;
@@ -355,9 +357,9 @@ FlexibleArm::ReceptanceLines::Term FlexibleArm::ReceptanceLines::term_of(const F
   switch (parameter.kind) {
     case Kind::compliance:
       out.change = Change::compliance;
-      std::ranges::copy(lower_of(compliance_unit_m_per_n * system_.flange_axes.col(axis) *
-                                 system_.flange_axes.col(axis).transpose()),
-                        out.one.begin());
+      std::ranges::copy(
+          lower_of(compliance_unit_m_per_n * system_.flange_axes.col(axis) * system_.flange_axes.col(axis).transpose()),
+          out.one.begin());
       break;
     case Kind::rotor_inertia:
       out.change = Change::rotor;

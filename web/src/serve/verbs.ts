@@ -9,7 +9,8 @@ export interface Run {
 
 /** All ways to run a file of this kind: first those that read it, then those that need it. */
 export function runsOf(verbs: Verb[], kind: FileKind): Run[] {
-  const reads = verbs.filter(({ inputs }) => inputs.includes(kind)).map((verb) => ({ verb, as: null }));
+  const first = (verb: Verb) => (verb.inputs[0] === kind ? 0 : 1); // others take the kind too: lobes of a job
+  const reads = verbs.filter(({ inputs }) => inputs.includes(kind)).sort((a, b) => first(a) - first(b)).map((verb) => ({ verb, as: null }));
   const needs = verbs.flatMap((verb) => {
     if (verb.inputs.includes(kind)) return [];
     return verb.options.filter(({ required, kinds }) => required && kinds?.includes(kind)).map((as) => ({ verb, as }));
