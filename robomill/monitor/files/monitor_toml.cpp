@@ -12,6 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/units.hpp"
