@@ -39,8 +39,9 @@ void set_thread_count(int threads) {
 }
 
 int thread_count() {
+  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // reads files
   const int requested = requested_threads();
-  const int threads = requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = requested > 0 ? requested : cores;
   return std::min(threads, most_threads);
 }
 

@@ -13,6 +13,7 @@
 #include "robomill/cell/check/placement.hpp"
 #include "robomill/cell/check/shown.hpp"
 #include "robomill/cell/check/tool_places.hpp"
+#include "robomill/cell/dynamics.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cell/posture_choice.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
@@ -99,6 +100,7 @@ std::unique_ptr<program::ProgramFile> open_program_of(const CellCheckJob& job, c
 void note_what_is_open(const Targets& targets, CellCheck& out, Progress& progress) {
   Cell& cell = out.cell;
   out.notes = cell.notes;
+  for (std::string& note : calibration_notes(cell)) out.notes.push_back(std::move(note));
   if (!cell.origin_given) {
     out.notes.push_back(
         "The cell has no workpiece.origin_mm: the program's frame was taken to stand in the robot's base.");

@@ -87,6 +87,17 @@ modal::MeasuredPosture measured(const Cell& cell, std::size_t index, CellDynamic
   return out;
 }
 
+std::vector<modal::MeasuredPosture> all_measured(const Cell& cell, CellDynamics& told) {
+  std::vector<modal::MeasuredPosture> out;
+  for (std::size_t i = 0; i < cell.postures.size(); ++i) out.push_back(measured(cell, i, told));
+  return out;
+}
+
+CalibrationDocument document_of(const Cell& cell, const std::vector<modal::MeasuredPosture>& postures,
+                                const modal::PostureModelOptions& options) {
+  return {cell.path, modal::calibration_fingerprint(cell.robot, payload_of(cell), postures, options)};
+}
+
 /// Before the long work starts.
 void require_posture(const robot::Arm& arm, const std::vector<double>& joints) {
   if (joints.size() != arm.joints.size()) {
@@ -233,6 +244,10 @@ Eigen::Vector3d mean_deviation(const modal::PostureModel& model, const std::vect
   return sum / static_cast<double>(postures.size());
 }
 
+std::string kept_text(const CalibrationDocument& document) {
+  return fmt::format("The calibration is kept in {} until its inputs change.", document.name());
+}
+
 /// The arm's model; calibrated as an earlier run did where the cell's calibration document is of these inputs, which is
 /// else replaced.
 /// @param notes  of the document
@@ -242,7 +257,7 @@ std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
                                                     std::vector<std::string>& notes, Progress& progress) {
   const std::optional<robot::Link> payload = payload_of(cell);
   if (postures.empty()) return std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress);
-  const CalibrationDocument document(cell.path, modal::calibration_fingerprint(cell.robot, payload, postures, options));
+  const CalibrationDocument document = document_of(cell, postures, options);
   const std::optional<modal::PostureCalibration> kept = document.read(notes);
   auto model =
       std::make_shared<modal::PostureModel>(cell.robot, payload, postures, options, progress, kept ? &*kept : nullptr);
@@ -254,9 +269,7 @@ std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
     }
     in_place = document.write(*model->calibration(), notes);
   }
-  if (in_place) {
-    notes.push_back(fmt::format("The calibration is kept in {} until its inputs change.", document.name()));
-  }
+  if (in_place) notes.push_back(kept_text(document));
   return model;
 }
 
@@ -265,8 +278,7 @@ std::shared_ptr<const modal::PostureModel> model_of(const Cell& cell,
 CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
   CellDynamics out;
   require_different_files(cell);
-  std::vector<modal::MeasuredPosture> postures;
-  for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out));
+  const std::vector<modal::MeasuredPosture> postures = all_measured(cell, out);
   const modal::PostureModelOptions options;
   std::vector<std::string> of_document;
   try {
@@ -293,6 +305,25 @@ CellDynamics cell_dynamics(const Cell& cell, Progress& progress) {
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
   add_assumed(out.assumed, assumed_damping(cell, report));
   return out;
+}
+
+std::vector<std::string> calibration_notes(const Cell& cell) {
+  std::vector<std::string> notes;
+  if (cell.postures.empty()) return notes;
+  try {
+    CellDynamics read;
+    const CalibrationDocument document = document_of(cell, all_measured(cell, read), {});
+    if (document.read(notes)) {
+      notes.push_back(kept_text(document));
+    } else {
+      notes.push_back(fmt::format("The postures are not calibrated yet: the next run that needs their dynamics does it, "
+                                  "and keeps it in {}.",
+                                  document.name()));
+    }
+  } catch (const InvalidInput& error) {
+    notes.push_back(fmt::format("The postures cannot be calibrated: {}", error.what()));
+  }
+  return notes;
 }
 
 modal::PosturePrediction CellDynamics::at(const Eigen::VectorXd& joints) const {

@@ -41,6 +41,9 @@ struct CellDynamics {
 /// @throws InvalidInput with file, line and posture; Interrupted
 [[nodiscard]] ROBOMILL_API CellDynamics cell_dynamics(const Cell& cell, Progress& progress = Progress::none());
 
+/// Whether the calibration of [[postures]] is kept beside the cell, in sentences; none of a cell without them.
+[[nodiscard]] std::vector<std::string> calibration_notes(const Cell& cell);
+
 /// Axes that a posture's modes are written in: the robot's base, or its flange before any mount.
 enum class PostureAxes { base, flange };
 inline constexpr Name<PostureAxes> posture_axes_names[] = {{"base", PostureAxes::base},

@@ -43,7 +43,7 @@ class BlockSearch {
   BlockStability run() {
     BlockStability out;
     if (options_.margin) look_at_gains(out);
-    out.at = point_result(evaluator_, point_);
+    if (options_.point) out.at = point_result(evaluator_, point_);
     if (options_.margin) out.at.gain_margin = gain_of(out.gain);
     look_at_depths(out);
     out.evaluations = evaluator_.evaluations();

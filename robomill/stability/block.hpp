@@ -18,6 +18,7 @@ struct ROBOMILL_API BlockOptions {
   /// analytic cut to half the height of the edges at most.
   std::array<double, 2> axial_depth_m = {0.0, 0.0};
   double most_gain = 16.0;  ///< up to which the gain margin is looked for, in [2, 1000]; its reciprocal is the least
+  bool point = true;        ///< else `at` says nothing
   bool margin = true;       ///< else `gain` is not looked for, and at.gain_margin is NaN
   bool regime = true;
   bool quantiles = true;  ///< from the deviations that the modes know of themselves

@@ -241,6 +241,19 @@ TEST(CalibrationDocument, IsWholeWhereSeveralWriteIt) {
   EXPECT_EQ(posture_modes_json(place.modes()), results.front());
 }
 
+TEST(CalibrationDocument, IsNamedByTheCheckOfACell) {
+  const Place place;
+  const auto note = [&] { return calibration_notes(read_cell(place.path)).back(); };
+  EXPECT_NE(note().find("not calibrated yet"), std::string::npos);
+  EXPECT_FALSE(fs::exists(place.kept));
+  static_cast<void>(place.modes());
+  EXPECT_EQ(note(), "The calibration is kept in cell.calibration.json until its inputs change.");
+  place.folder.file("tip.csv", replaced(frfs(), "\n5,", "\n5.1,"));
+  EXPECT_NE(note().find("not calibrated yet"), std::string::npos);
+  fs::remove(place.folder.at("tip.csv"));
+  EXPECT_NE(note().find("cannot be calibrated: "), std::string::npos);
+}
+
 TEST(CalibrationDocument, IsWrittenForNoCellWithoutAFileOrPostures) {
   const Place place;
   Cell read = read_cell(place.path);

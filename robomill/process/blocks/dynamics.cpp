@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -12,6 +16,30 @@
 #include "robomill/process/decide/units.hpp"
 
 namespace robomill::process {
+
+namespace {
+
+/// Postures of a program: each of its runs asks for the same ones.
+class KnownPostures {
+ public:
+  template <class Find>
+  PostureDynamics find(const Eigen::VectorXd& joints, const Find& find) {
+    const std::vector<double> key(joints.begin(), joints.end());
+    {
+      const std::scoped_lock lock(mutex_);
+      if (const auto at = known_.find(key); at != known_.end()) return at->second;
+    }
+    PostureDynamics found = find();
+    const std::scoped_lock lock(mutex_);
+    return known_.emplace(key, std::move(found)).first->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::vector<double>, PostureDynamics> known_;
+};
+
+}  // namespace
 
 std::array<bool, 3> pushed_axes(const ForcesResult& forces) {
   std::array<bool, 3> out = {true, true, true};
@@ -47,13 +75,15 @@ DynamicsAt dynamics_of_cell(const cell::Cell& cell, const std::array<bool, 3>& p
   notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
   add_assumed(assumed, dynamics.assumed);
   const bool measured = dynamics.model->report().postures > 0;
-  return [dynamics, measured](const Eigen::VectorXd& joints) {
-    modal::PosturePrediction there = dynamics.at(joints);
-    PostureDynamics out = {.modes = {}, .joint_distance_rad = there.distance_rad};
-    out.unmatched = dynamics.unmatched(there);
-    if (measured) out.measured_nearby = there.measured_nearby;
-    out.modes = std::move(there.modes);
-    return out;
+  return [dynamics, measured, known = std::make_shared<KnownPostures>()](const Eigen::VectorXd& joints) {
+    return known->find(joints, [&] {
+      modal::PosturePrediction there = dynamics.at(joints);
+      PostureDynamics out = {.modes = {}, .joint_distance_rad = there.distance_rad};
+      out.unmatched = dynamics.unmatched(there);
+      if (measured) out.measured_nearby = there.measured_nearby;
+      out.modes = std::move(there.modes);
+      return out;
+    });
   };
 }
 

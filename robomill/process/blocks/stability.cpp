@@ -79,7 +79,7 @@ double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
   options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
-  options.margin = options.regime = options.quantiles = false;
+  options.point = options.margin = options.regime = options.quantiles = false;
   return stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options)
       .at.limit_depth_m;
 }

@@ -253,16 +253,17 @@ BlockCut WayModel::cut_at(std::size_t look_class, double speed) const {
 }
 
 double WayModel::margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
-                           bool& stable) const {
+                           bool* stable) const {
   const BlockCut at = cut_at(look_class, speed);
   const double depth_m = engaged_depth_m(at.cut);
   const stability::BlockStability found =
       stability::block_stability(block_problem(at, modes), speed, depth_m,
                                  {.tolerance = at.tolerance,
                                   .axial_depth_m = {shallowest * depth_m, deepest * depth_m},
+                                  .point = stable != nullptr,
                                   .margin = false,
                                   .regime = false});
-  stable = found.at.stable;
+  if (stable != nullptr) *stable = found.at.stable;
   const bool limited = found.limit.status == stability::Limit::Status::found;
   return 1.0 - depth_m / (limited ? std::min(found.limit_5_percent_m, deepest * depth_m) : deepest * depth_m);
 }
@@ -284,7 +285,7 @@ ClassLook WayModel::compute(std::size_t look_class, double speed, double gamma_r
     out.stable = !keep_vibration(look_class, out, ignored) && is_stable(look_class, there.modes, speed);
     if (out.stable) return out;
   }
-  out.margin = margin_at(look_class, there.modes, speed, deepest(), out.stable);
+  out.margin = margin_at(look_class, there.modes, speed, deepest(), &out.stable);
   if (surface && out.stable) add_steady_motion(look_class, there.modes, speed, out);
   return out;
 }
@@ -403,12 +404,11 @@ bool WayModel::keep_vibration(std::size_t look_class, const ClassLook& found, de
 
 double WayModel::margin(std::size_t look_class, double speed, double gamma_rad) const {
   const Stand& there = stand(look_class, gamma_rad);
-  bool stable = false;
   {
     const std::scoped_lock lock(mutex_);
     ++map_looks_;
   }
-  return there.reachable ? margin_at(look_class, there.modes, speed, map_deepest, stable) : not_reachable;
+  return there.reachable ? margin_at(look_class, there.modes, speed, map_deepest, nullptr) : not_reachable;
 }
 
 long long WayModel::evaluations() const {
