@@ -234,9 +234,18 @@ std::vector<const VerbOption*> VerbGroup::options() const {
   return out;
 }
 
+const std::vector<Verb>& all_verbs() {
+  static const std::vector<Verb> all = [] {
+    std::vector<Verb> out = own_verbs();
+    out.insert(out.begin() + 1, jobs::verbs().begin(), jobs::verbs().end());  // behind init
+    return out;
+  }();
+  return all;
+}
+
 std::vector<VerbGroup> verb_groups() {
   std::vector<VerbGroup> out;
-  for (const Verb& verb : jobs::verbs()) {
+  for (const Verb& verb : all_verbs()) {
     const std::string_view plain = verb.name.substr(0, verb.name.find(" --"));
     const auto known = std::ranges::find(out, plain, &VerbGroup::name);
     (known == out.end() ? out.emplace_back(VerbGroup{.name = plain}) : *known).verbs.push_back(&verb);
@@ -283,7 +292,7 @@ void CommandLine::Parts::add(VerbGroup group) {
   }
   std::string footer;
   for (const Verb* const verb : sub.group.verbs) footer += "Example: robomill " + std::string(verb->example) + "\n";
-  footer += "Documentation: docs/formats.md, " + std::string(plain.readme);
+  footer += "Documentation: docs/formats.md" + (plain.readme.empty() ? "" : ", " + std::string(plain.readme));
   sub.app->footer(footer);
   sub.app->callback([this, &sub] { chosen = &sub; });
 }

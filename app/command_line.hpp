@@ -19,6 +19,8 @@ struct VerbGroup {
   /// Of all of them, each name once; those that every verb takes last.
   [[nodiscard]] std::vector<const jobs::VerbOption*> options() const;
 };
+/// Every verb: init, the jobs, then those that are no jobs.
+[[nodiscard]] const std::vector<jobs::Verb>& all_verbs();
 [[nodiscard]] std::vector<VerbGroup> verb_groups();
 
 /// The option that makes a verb of a plain one: "--tools".

@@ -115,7 +115,7 @@ std::string manual() {
       ROBOMILL_VERSION);
   for (const VerbOption& option : common_options()) out += option_entry(option);
   out += ".SH VERBS\n";
-  for (const Verb& verb : jobs::verbs()) out += verb_entry(verb);
+  for (const Verb& verb : all_verbs()) out += verb_entry(verb);
   return out +
          ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nbad input\n.TP\n2\nwrong usage\n.TP\n3\n"
          "finished without an answer: not converged, no safe depth\n.TP\n130\ninterrupted\n";
@@ -123,7 +123,7 @@ std::string manual() {
 
 std::string verbs_table() {
   std::string out = "| verb | what it does |\n|---|---|\n";
-  for (const Verb& verb : jobs::verbs()) {
+  for (const Verb& verb : all_verbs()) {
     out += fmt::format("| `robomill {}` | {}{} |\n", verb.example, verb.purpose,
                        verb.more.empty() ? "" : fmt::format(". {}", verb.more));
   }

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "robomill/base/progress.hpp"
 #include "robomill/jobs/verbs.hpp"
@@ -29,7 +30,8 @@ inline constexpr std::string_view serve_worker = "serve-worker";
 /// The program's exit code.
 [[nodiscard]] int work_for_server();
 
-// Verbs that are no jobs: their records have no run.
+/// Records of the verbs that are no jobs: without a run.
+[[nodiscard]] std::vector<jobs::Verb> own_verbs();
 Exit run_init(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_monitor(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_serve(const jobs::VerbJob& job, const Common& common, Progress& progress);

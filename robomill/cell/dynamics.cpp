@@ -316,9 +316,10 @@ std::vector<std::string> calibration_notes(const Cell& cell) {
     if (document.read(notes)) {
       notes.push_back(kept_text(document));
     } else {
-      notes.push_back(fmt::format("The postures are not calibrated yet: the next run that needs their dynamics does it, "
-                                  "and keeps it in {}.",
-                                  document.name()));
+      notes.push_back(
+          fmt::format("The postures are not calibrated yet: the next run that needs their dynamics does it, "
+                      "and keeps it in {}.",
+                      document.name()));
     }
   } catch (const InvalidInput& error) {
     notes.push_back(fmt::format("The postures cannot be calibrated: {}", error.what()));

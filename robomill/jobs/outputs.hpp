@@ -65,22 +65,19 @@ void require_output(Document document, const std::filesystem::path& path);
 [[nodiscard]] std::string document(const StiffnessResult& result, io::Format format);
 [[nodiscard]] std::string document(const cell::CellCheck& result, io::Format format);
 
+/// @throws InvalidInput if the place cannot be written
+void write_text(const std::filesystem::path& path, const std::string& text);
 /// Writes a result in the format that the file's ending names. @throws InvalidInput if the place cannot be written
+template <class Result>
+void write_document(const std::filesystem::path& path, const Result& result) {
+  write_text(path, document(result, io::format_of(path)));
+}
 void write_document(const std::filesystem::path& path, const FrfJobResult& result,
                     const modal::FrfWriteOptions& options = {});
-void write_document(const std::filesystem::path& path, const ModesResult& result);
-void write_document(const std::filesystem::path& path, const cell::ModesOfPosture& result);
 void write_document(const std::filesystem::path& path, const TipPrediction& result);
-void write_document(const std::filesystem::path& path, const ToolsResult& result);
-void write_document(const std::filesystem::path& path, const JointResult& result);
-void write_document(const std::filesystem::path& path, const LobesJobResult& result);
-void write_document(const std::filesystem::path& path, const ExplainResult& result);
 void write_document(const std::filesystem::path& path, const SimulateResult& result);
-void write_document(const std::filesystem::path& path, const process::ForcesResult& result);
-void write_document(const std::filesystem::path& path, const CoefficientsResult& result);
 /// As .toml, a line for cell.toml, only where the stiffness converged.
 void write_document(const std::filesystem::path& path, const StiffnessResult& result);
-void write_document(const std::filesystem::path& path, const cell::CellCheck& result);
 /// As .toml, a detector, only where one was found.
 void write_document(const std::filesystem::path& path, const CalibrateResult& result);
 

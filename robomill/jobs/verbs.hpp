@@ -156,11 +156,11 @@ struct Verb {
   std::string page::Report::*report = nullptr;  ///< the part of the page that --report FILE.json has; none: all
   bool computes = true;                         ///< has a page, and work that may take long
   std::vector<VerbOption> options = {};
-  /// Does the work and writes the output. @throws InvalidInput, Interrupted. None: the program has its own.
+  /// Does the work and writes the output. @throws InvalidInput, Interrupted. None: it is no job, see app/.
   Outcome (*run)(const VerbJob& job, Progress& progress) = nullptr;
 };
 
-/// Every verb. Those that the page runs are in the order of its buttons.
+/// Every verb that is a job, in the order of the page's buttons.
 [[nodiscard]] std::span<const Verb> verbs();
 
 /// @param options  by name; null ones are left out

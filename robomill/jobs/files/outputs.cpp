@@ -65,11 +65,6 @@ constexpr std::array<Endings, 12> endings = {
      {Document::cell_check, {none, none, none, none}, "a cell's check is written as .json"},
      {Document::calibration, {Format::toml, none, none, none}, "a calibrated detector is written as .toml or .json"}}};
 
-template <class Result>
-void write_text(const std::filesystem::path& path, const Result& result) {
-  io::write_file(path, document(result, io::format_of(path)));
-}
-
 }  // namespace
 
 void require_output(Document document, const std::filesystem::path& path) {
@@ -132,48 +127,26 @@ std::string document(const cell::CellCheck& result, Format) {
   return cell::cell_check_json(result);
 }
 
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  io::write_file(path, text);
+}
 void write_document(const std::filesystem::path& path, const FrfJobResult& result,
                     const modal::FrfWriteOptions& options) {
   modal::write_frfs(path, result.frfs, options);
 }
-void write_document(const std::filesystem::path& path, const ModesResult& result) {
-  write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const cell::ModesOfPosture& result) {
-  write_text(path, result);
-}
 void write_document(const std::filesystem::path& path, const TipPrediction& result) {
-  if (io::format_of(path) == Format::json) return write_text(path, result);  // with what was found out beside the FRFs
+  if (io::format_of(path) == Format::json)
+    return write_text(path, document(result, Format::json));  // with what was found out beside the FRFs
   modal::write_frfs(path, result.tip.frfs);
 }
-void write_document(const std::filesystem::path& path, const ToolsResult& result) {
-  write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const JointResult& result) {
-  write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const LobesJobResult& result) {
-  write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const ExplainResult& result) {
-  write_text(path, result);
-}
 void write_document(const std::filesystem::path& path, const SimulateResult& result) {
-  if (io::format_of(path) == Format::json) return write_text(path, result);
+  if (io::format_of(path) == Format::json) return write_text(path, document(result, Format::json));
   simulation::write_simulation(path, result.simulation);
-}
-void write_document(const std::filesystem::path& path, const process::ForcesResult& result) {
-  write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const CoefficientsResult& result) {
-  write_text(path, result);
 }
 void write_document(const std::filesystem::path& path, const StiffnessResult& result) {
   // A line for cell.toml says nothing of its convergence.
-  if (result.converged() || io::format_of(path) != Format::toml) write_text(path, result);
-}
-void write_document(const std::filesystem::path& path, const cell::CellCheck& result) {
-  write_text(path, result);
+  if (result.converged() || io::format_of(path) != Format::toml)
+    write_text(path, document(result, io::format_of(path)));
 }
 void write_document(const std::filesystem::path& path, const CalibrateResult& result) {
   if (io::format_of(path) == Format::json) return io::write_file(path, monitor::calibration_json(result.calibration));

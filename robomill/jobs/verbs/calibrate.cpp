@@ -73,7 +73,7 @@ Verb calibrate_verb() {
           .more = "With its ROC curve, half of the recordings to verify.",
           .example = "calibrate recordings.toml -o monitor.toml",
           .readme = "robomill/monitor/README.md",
-          .input = file_option("recordings", "recordings.toml: files with labels", "recordings", true),
+          .input = file_option("recordings", "recordings.toml: files with labels", {"recordings"}, true),
           .document = Document::calibration,
           .report = &page::Report::calibration,
           .options = {seed_option()},

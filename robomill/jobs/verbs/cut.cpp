@@ -11,15 +11,8 @@
 namespace robomill::jobs {
 namespace {
 
-/// A document with the tables of a cut, or a job that has them.
-VerbOption cut_input(std::string_view name, std::string_view meaning) {
-  VerbOption input = file_option(name, meaning, name, true);
-  input.kinds.emplace_back("job");
-  return input;
-}
-
 VerbOption lobes_input() {
-  return cut_input("lobes", "lobes.toml, or a job.toml");
+  return file_option("lobes", "lobes.toml, or a job.toml", {"lobes", "job"}, true);
 }
 
 Outcome run_lobes_verb(const VerbJob& job, Progress& progress) {
@@ -85,10 +78,10 @@ Verb lobes_verb() {
           .input = lobes_input(),
           .output = "lobes.json",
           .document = Document::lobes,
-          .options = {{.name = "at",
-                       .meaning = "points RPM,MM (degrees where an angle is swept): spectral radius there; may be "
-                                  "repeated",
-                       .takes = Takes::points},
+          .options = {plain_option("at",
+                                   "points RPM,MM (degrees where an angle is swept): spectral radius there; may be "
+                                   "repeated",
+                                   Takes::points),
                       flag_option("compare", "the limits by every method: error against collocation and time"),
                       seed_option()},
           .run = &run_lobes_verb};
@@ -107,16 +100,8 @@ Verb simulate_verb() {
                        .meaning = "RPM,MM: spindle speed and axial depth",
                        .takes = Takes::point,
                        .required = true},
-                      {.name = "seconds",
-                       .meaning = "how long to cut (default: 2 s)",
-                       .takes = Takes::number,
-                       .unit = "s",
-                       .above = 0},
-                      {.name = "sample_rate_hz",
-                       .meaning = "sample rate of the output (default: 10240 Hz)",
-                       .takes = Takes::number,
-                       .unit = "Hz",
-                       .above = 0},
+                      positive_option("seconds", "how long to cut (default: 2 s)", "s"),
+                      positive_option("sample_rate_hz", "sample rate of the output (default: 10240 Hz)", "Hz"),
                       flag_option("linear", "no loss of contact, as lobes take the cut"),
                       seed_option()},
           .run = &run_simulate_verb};
@@ -138,20 +123,18 @@ std::vector<VerbOption> explain_options() {
            .required = true,
            .at_least = 1,
            .at_most = 100},
-          {.name = "tolerance_hz",
-           .meaning = "how far a peak may lie from what explains it, or half a mode's width where that is more "
-                      "(default: 1 Hz)",
-           .takes = Takes::number,
-           .unit = "Hz",
-           .above = 0},
+          positive_option("tolerance_hz",
+                          "how far a peak may lie from what explains it, or half a mode's width where that is more "
+                          "(default: 1 Hz)",
+                          "Hz"),
           {.name = "speed_tolerance_percent",
            .meaning = "by how much the true speed may differ (default: 0.2 %)",
            .takes = Takes::number,
            .unit = "%",
            .at_least = 0,
            .at_most = 5},
-          file_option("lobes", "lobes.toml of the cut: decides whether its chatter is regenerative", "lobes"),
-          {.name = "at", .meaning = "RPM,MM of the cut, with its lobes.toml", .takes = Takes::point}};
+          file_option("lobes", "lobes.toml of the cut: decides whether its chatter is regenerative", {"lobes"}),
+          plain_option("at", "RPM,MM of the cut, with its lobes.toml", Takes::point)};
 }
 
 Verb explain_verb() {
@@ -180,11 +163,11 @@ Verb forces_verb() {
       .more = "Forces, torque, power and deflection over a revolution, or block by block.",
       .example = "forces forces.toml -o forces.csv --report forces.html",
       .readme = "robomill/cutting/README.md",
-      .input = cut_input("forces", "forces.toml, or a job.toml"),
+      .input = file_option("forces", "forces.toml, or a job.toml", {"forces", "job"}, true),
       .output = "forces.csv",
       .document = Document::forces,
-      .options = {file_option("program", "an NC program: a row a block in place of one revolution", "program"),
-                  file_option("cell", "cell.toml: the robot that the cut bends", "cell"), posture_option("program")},
+      .options = {file_option("program", "an NC program: a row a block in place of one revolution", {"program"}),
+                  file_option("cell", "cell.toml: the robot that the cut bends", {"cell"}), posture_option("program")},
       .run = &run_forces_verb};
 }
 
@@ -195,14 +178,10 @@ Verb coefficients_verb() {
           .more = "Coefficients with standard deviations.",
           .example = "coefficients slots.csv --teeth 4 -o coefficients.toml",
           .readme = "robomill/cutting/README.md",
-          .input = file_option("slots", "slots.csv", "slots", true),
+          .input = file_option("slots", "slots.csv", {"slots"}, true),
           .output = "coefficients.toml",
           .document = Document::coefficients,
-          .options = {{.name = "teeth",
-                       .meaning = "teeth of the cutter (default: 4, listed as assumed)",
-                       .takes = Takes::whole,
-                       .at_least = 1,
-                       .at_most = 100}},
+          .options = {whole_option("teeth", "teeth of the cutter (default: 4, listed as assumed)", 1, 100)},
           .run = &run_coefficients_verb};
 }
 

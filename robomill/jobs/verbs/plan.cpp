@@ -26,7 +26,7 @@ Verb plan_verb() {
           .more = "A recommendation with its margin, every stage's result, and a report that opens offline.",
           .example = "plan job.toml -o out/",
           .readme = "robomill/jobs/README.md",
-          .input = file_option("job", "job.toml", "job", true),
+          .input = file_option("job", "job.toml", {"job"}, true),
           .output = "out",
           .options = {flag_option("accept_fit", "go on with modes whose relative error is 20 % or more"),
                       posture_option(), seed_option()},

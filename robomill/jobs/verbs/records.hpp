@@ -8,27 +8,20 @@
 #include "robomill/jobs/pages.hpp"
 #include "robomill/jobs/summary.hpp"
 #include "robomill/jobs/verbs.hpp"
+#include "robomill/jobs/verbs/new_option.hpp"
 
 namespace robomill::jobs {
 
 [[nodiscard]] std::vector<Verb> structure_verbs();  ///< hits, FRFs, modes, the tool in its holder
 [[nodiscard]] std::vector<Verb> cut_verbs();        ///< stability, motion and forces of a cut
 [[nodiscard]] std::vector<Verb> robot_verbs();      ///< the robot under load, and along a program
-[[nodiscard]] Verb init_verb();
 [[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb calibrate_verb();
-[[nodiscard]] std::vector<Verb> program_verbs();  ///< of which app/ has the runs, as of init
 
 [[nodiscard]] inline VerbOption seed_option() {
-  return {.name = "seed", .meaning = "seed of random numbers (default: 1)", .takes = Takes::whole, .at_least = 0};
+  return whole_option("seed", "seed of random numbers (default: 1)", 0);
 }
-[[nodiscard]] inline VerbOption flag_option(std::string_view name, std::string_view meaning) {
-  return {.name = name, .meaning = meaning};
-}
-[[nodiscard]] inline VerbOption file_option(std::string_view name, std::string_view meaning, std::string_view kind,
-                                            bool required = false) {
-  return {.name = name, .meaning = meaning, .takes = Takes::file, .required = required, .kinds = {kind}};
-}
+
 /// Where an arm begins a program.
 [[nodiscard]] inline VerbOption posture_option(std::string_view needs = {}) {
   return {.name = "posture_deg",

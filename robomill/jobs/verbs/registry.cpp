@@ -6,7 +6,7 @@ namespace robomill::jobs {
 
 std::span<const Verb> verbs() {
   static const std::vector<Verb> all = [] {
-    std::vector<Verb> out = {init_verb(), plan_verb()};
+    std::vector<Verb> out = {plan_verb()};
     const auto add = [&out](std::vector<Verb> more) {
       out.insert(out.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
     };
@@ -14,7 +14,6 @@ std::span<const Verb> verbs() {
     add(cut_verbs());
     add(robot_verbs());
     out.push_back(calibrate_verb());
-    add(program_verbs());
     return out;
   }();
   return all;

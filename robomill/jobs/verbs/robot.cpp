@@ -69,10 +69,10 @@ Verb stiffness_verb() {
           .more = "With standard deviations, and which joints the loads do not determine.",
           .example = "stiffness loads.csv --cell cell.toml -o stiffness.toml",
           .readme = "robomill/robot/README.md",
-          .input = file_option("loads", "loads.csv: joint angles, force on the robot, displacement", "loads", true),
+          .input = file_option("loads", "loads.csv: joint angles, force on the robot, displacement", {"loads"}, true),
           .output = "stiffness.json",
           .document = Document::stiffness,
-          .options = {file_option("cell", "cell.toml: the robot and its tool", "cell", true),
+          .options = {file_option("cell", "cell.toml: the robot and its tool", {"cell"}, true),
                       {.name = "point_mm",
                        .meaning = "X,Y,Z where the load attacks, in mm in the flange frame (default: the tool's tip)",
                        .takes = Takes::numbers,
@@ -90,14 +90,13 @@ Verb cell_check_verb() {
               "reach by how much.",
           .example = "cell check cell.toml --joints 0,-80,108,0,62,0 --report cell.html",
           .readme = "robomill/cell/README.md",
-          .input = file_option("cell", "cell.toml", "cell", true),
+          .input = file_option("cell", "cell.toml", {"cell"}, true),
           .output = "check.json",
           .document = Document::cell_check,
           .report = &page::Report::cell,
-          .options = {file_option("program", "an NC program that the tool must follow there", "program"),
-                      {.name = "joints",
-                       .meaning = "show this position too: q1,q2,… in degrees (mm where joints slide)",
-                       .takes = Takes::numbers},
+          .options = {file_option("program", "an NC program that the tool must follow there", {"program"}),
+                      plain_option("joints", "show this position too: q1,q2,… in degrees (mm where joints slide)",
+                                   Takes::numbers),
                       posture_option("program")},
           .run = &run_cell_check_verb};
 }
@@ -122,47 +121,40 @@ Verb posture_modes_verb() {
                        .required = true,
                        .flag = "--joints",
                        .unit = "deg"},
-                      {.name = "axes",
-                       .meaning = "axes that the posture's modes are written in (default: base)",
-                       .takes = Takes::word,
-                       .words = words_of(cell::posture_axes_names)}},
+                      word_option("axes", "axes that the posture's modes are written in (default: base)",
+                                  words_of(cell::posture_axes_names))},
           .run = &run_posture_modes_verb};
 }
 
 VerbOption smooth_cell() {
-  VerbOption cell = file_option("cell", "cell.toml: the robot, its joints' limits, [smoothing]", "cell", true);
+  VerbOption cell = file_option("cell", "cell.toml: the robot, its joints' limits, [smoothing]", {"cell"}, true);
   cell.job_gives = true;
   return cell;
 }
 
 Verb smooth_verb() {
-  return {.name = "smooth",
-          .button = "Smooth the program",
-          .purpose = "an NC program to a joint trajectory within every limit of the robot",
-          .more =
-              "As CSV, HDF5, or a program for KUKA, ABB or Universal Robots; checked for collisions where the cell "
-              "has [geometry].",
-          .example = "smooth part.ngc --cell cell.toml -o trajectory.csv --report smooth.html",
-          .readme = "robomill/path/README.md",
-          .input =
-              file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls, .csv; or a job.toml", "program", true),
-          .output = "trajectory.csv",
-          .report = &page::Report::smooth,
-          .options = {smooth_cell(),
-                      {.name = "method",
-                       .meaning = "method (default: the cell's)",
-                       .takes = Takes::word,
-                       .words = words_of(path::method_names)},
-                      flag_option("compare", "all other methods beside it, in the summary and the report"),
-                      flag_option("keep_violations", "write the trajectory even where it violates a limit"),
-                      {.name = "program_period_ms",
-                       .meaning = "longest time between the points of a joint program, in ms (default: 20; 2 for "
+  return {
+      .name = "smooth",
+      .button = "Smooth the program",
+      .purpose = "an NC program to a joint trajectory within every limit of the robot",
+      .more =
+          "As CSV, HDF5, or a program for KUKA, ABB or Universal Robots; checked for collisions where the cell "
+          "has [geometry].",
+      .example = "smooth part.ngc --cell cell.toml -o trajectory.csv --report smooth.html",
+      .readme = "robomill/path/README.md",
+      .input =
+          file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls, .csv; or a job.toml", {"program"}, true),
+      .output = "trajectory.csv",
+      .report = &page::Report::smooth,
+      .options = {smooth_cell(), word_option("method", "method (default: the cell's)", words_of(path::method_names)),
+                  flag_option("compare", "all other methods beside it, in the summary and the report"),
+                  flag_option("keep_violations", "write the trajectory even where it violates a limit"),
+                  positive_option("program_period_ms",
+                                  "longest time between the points of a joint program, in ms (default: 20; 2 for "
                                   ".script and .servoj, always)",
-                       .takes = Takes::number,
-                       .unit = "ms",
-                       .above = 0},
-                      posture_option()},
-          .run = &run_smooth_verb};
+                                  "ms"),
+                  posture_option()},
+      .run = &run_smooth_verb};
 }
 
 }  // namespace

@@ -12,11 +12,11 @@ namespace robomill::jobs {
 namespace {
 
 VerbOption as_option() {
-  return {.name = "as", .meaning = "names of headerless FRFs, one a file: xx,yy", .takes = Takes::texts};
+  return plain_option("as", "names of headerless FRFs, one a file: xx,yy", Takes::texts);
 }
 
 VerbOption assembly_input() {
-  return file_option("assembly", "assembly.toml", "assembly", true);
+  return file_option("assembly", "assembly.toml", {"assembly"}, true);
 }
 
 Outcome run_frf_verb(const VerbJob& job, Progress& progress) {
@@ -79,7 +79,7 @@ Verb frf_verb() {
           .more = "Hits are CSV, TXT, MAT, UFF or WAV. Each has a grade, and a remedy for each fault.",
           .example = "frf hits.toml -o tip.uff",
           .readme = "robomill/modal/README.md",
-          .input = file_option("hits", "hits.toml", "hits", true),
+          .input = file_option("hits", "hits.toml", {"hits"}, true),
           .output = "tip.uff",
           .document = Document::frfs,
           .options = {flag_option("binary", "write .uff as data set 58b")},
@@ -100,23 +100,16 @@ Verb modes_verb() {
                     .kinds = {"frf", "record"}},
           .output = "modes.json",
           .document = Document::modes,
-          .options = {{.name = "method",
-                       .meaning = "method of the fit (default: hybrid)",
-                       .takes = Takes::word,
-                       .words = words_of(modal::fit_method_names)},
+          .options = {word_option("method", "method of the fit (default: hybrid)", words_of(modal::fit_method_names)),
                       {.name = "band_hz",
                        .meaning = "band to fit: low,high in Hz",
                        .takes = Takes::numbers,
                        .flag = "--band",
                        .unit = "Hz",
                        .count = 2},
-                      {.name = "modes",
-                       .meaning = "exactly this many modes",
-                       .takes = Takes::whole,
-                       .at_least = 1,
-                       .at_most = 1000},
+                      whole_option("modes", "exactly this many modes", 1, 1000),
                       as_option(),
-                      file_option("config", "modes.toml: every option of the fit", "fit"),
+                      file_option("config", "modes.toml: every option of the fit", {"fit"}),
                       flag_option("accept_fit", "take modes whose relative error is 20 % or more"),
                       seed_option()},
           .run = &run_modes_verb};
@@ -133,10 +126,10 @@ Verb couple_verb() {
           .output = "tip.uff",
           .document = Document::frfs,
           .options = {flag_option("rotations", "also the rotations and moments at the tip"),
-                      {.name = "holder_out",
-                       .meaning = "keep the measured holder's receptances here, for every tool after: .uff .csv .mat "
-                                  ".json",
-                       .takes = Takes::new_file}},
+                      plain_option("holder_out",
+                                   "keep the measured holder's receptances here, for every tool after: .uff .csv .mat "
+                                   ".json",
+                                   Takes::new_file)},
           .run = &run_couple_verb};
 }
 
@@ -149,11 +142,9 @@ Verb tools_verb() {
           .input = assembly_input(),
           .output = "tools.json",
           .document = Document::tools,
-          .options = {file_option("tools", "tools.csv: a table of tools, as .csv or .json", "tools", true),
-                      file_option("lobes", "lobes.toml: each tool's best speed and depth in this cut", "lobes"),
-                      {.name = "frfs",
-                       .meaning = "a folder for the FRFs at each tool's tip, N_TOOL.uff",
-                       .takes = Takes::new_folder},
+          .options = {file_option("tools", "tools.csv: a table of tools, as .csv or .json", {"tools"}, true),
+                      file_option("lobes", "lobes.toml: each tool's best speed and depth in this cut", {"lobes"}),
+                      plain_option("frfs", "a folder for the FRFs at each tool's tip, N_TOOL.uff", Takes::new_folder),
                       seed_option()},
           .run = &run_tools_verb};
 }
@@ -173,18 +164,11 @@ Verb joint_verb() {
                        .takes = Takes::files,
                        .required = true,
                        .kinds = {"frf", "record"}},
-                      {.name = "method",
-                       .meaning = "method of the search (default: hybrid)",
-                       .takes = Takes::word,
-                       .words = words_of(coupling::joint_method_names)},
-                      {.name = "axis",
-                       .meaning = "which FRF is fitted: x (xx) or y (yy) (default: x)",
-                       .takes = Takes::word,
-                       .words = {"x", "y"}},
-                      {.name = "mutation",
-                       .meaning = "mutation of ga (default: search.mutation, else uniform)",
-                       .takes = Takes::word,
-                       .words = words_of(coupling::mutation_names)},
+                      word_option("method", "method of the search (default: hybrid)",
+                                  words_of(coupling::joint_method_names)),
+                      word_option("axis", "which FRF is fitted: x (xx) or y (yy) (default: x)", {"x", "y"}),
+                      word_option("mutation", "mutation of ga (default: search.mutation, else uniform)",
+                                  words_of(coupling::mutation_names)),
                       as_option(),
                       seed_option()},
           .run = &run_joint_verb};

@@ -1,0 +1,121 @@
+#include <string_view>
+#include <vector>
+
+#include "robomill/jobs/init.hpp"
+#include "robomill/jobs/verbs/new_option.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+using jobs::flag_option;
+using jobs::plain_option;
+using jobs::positive_option;
+using jobs::Takes;
+using jobs::Verb;
+using jobs::VerbOption;
+using jobs::whole_option;
+using jobs::word_option;
+
+Verb init_verb() {
+  return {
+      .name = "init",
+      .purpose = "a commented file in which what only you know is to be filled in",
+      .more =
+          "--example writes one that runs as it is, --interactive asks in shop terms, in any units. Columns and "
+          "directions of recorded hits are guessed.",
+      .example = "init job -o job.toml --interactive",
+      .readme = "robomill/jobs/README.md",
+      .input = {.name = "kind",
+                .meaning = "what the file describes",
+                .takes = Takes::word,
+                .required = true,
+                .words = jobs::words_of(jobs::template_names)},
+      .computes = false,
+      .options = {
+          {.name = "output",
+           .meaning = "write here (default: KIND.toml); - writes to standard output",
+           .takes = Takes::new_file,
+           .flag = "-o,--output"},
+          flag_option("example", "made-up values that run as they are, each listed as assumed until changed"),
+          flag_option("interactive", "ask for what is known, in shop terms and any unit"),
+          plain_option("data", "of hits and job: a folder with recorded hits (default: that of the file)", Takes::file),
+          plain_option("robot", "of a cell: an arm by its name, kuka-kr210-r2700 for one")}};
+}
+
+std::vector<VerbOption> monitor_options() {
+  return {plain_option("input",
+                       "a recording (.wav .csv .txt .mat .uff), - for standard input, or mqtt://HOST:PORT/TOPIC "
+                       "(mqtts:// with TLS); default: mqtt.topic of monitor.toml"),
+          word_option("format", "of standard input, or of a file whatever its ending (default: auto)",
+                      {"auto", "f32", "i16", "csv"}),
+          flag_option("live", "do not keep standard input waiting: leave out hops that come too fast"),
+          flag_option("every_window", "an event each hop, not only on change"),
+          flag_option("watch", "level, score, state and spectrum on standard error"),
+          plain_option("record", "a folder for the seconds before each alarm, as WAV", Takes::new_folder),
+          whole_option("metrics_port", "answer GET /metrics on loopback; 0: any port that is free", 0, 65535),
+          positive_option("seconds", "process so much of the stream, then end", "s")};
+}
+
+Verb monitor_verb() {
+  return {.name = "monitor",
+          .purpose = "a running accelerometer to an alarm, the mode that chatters and a better speed",
+          .more = "From WAV, CSV, MAT, standard input or MQTT.",
+          .example = "monitor monitor.toml --input cut.wav -o events.jsonl",
+          .readme = "robomill/live/README.md, robomill/monitor/README.md",
+          .input = jobs::file_option("monitor", "monitor.toml: channels, process, detector", {"monitor"}, true),
+          .options = monitor_options()};
+}
+
+Verb serve_verb() {
+  return {.name = "serve",
+          .purpose = "the page of a folder, over HTTP",
+          .more =
+              "Files edited with their errors, jobs run, the γ of a program dragged, lobes that follow sliders, "
+              "hammer hits as they are made, the monitor live.",
+          .example = "serve jobs/ --port 8437",
+          .readme = "robomill/serve/README.md",
+          .input = plain_option("folder", "what is served, and nothing outside it (default: the current folder)",
+                                Takes::file),
+          .computes = false,
+          .options = {
+              whole_option("port", "to listen at; 0: any that is free (default: 8437)", 0, 65535),
+              plain_option("host",
+                           "address to listen at, or localhost (default: 127.0.0.1); one that other machines "
+                           "reach needs a token"),
+              plain_option("token",
+                           "that whoever asks must know: 16 or more letters and digits; other users of this "
+                           "machine see it in ps"),
+              {.name = "token_file",
+               .meaning = "a file that has the token alone",
+               .takes = Takes::file,
+               .excludes = "token"},
+              whole_option("job_memory_mb", "that a job may have (default: half the machine's)", 100, 100'000'000)}};
+}
+
+Verb completion_verb() {
+  return {.name = "completion",
+          .purpose = "a shell's completion of verbs, options and words",
+          .example = "completion bash -o robomill.bash",
+          .readme = "robomill/jobs/README.md",
+          .input = {.name = "shell", .meaning = "the shell", .takes = Takes::word, .required = true, .words = {"bash"}},
+          .computes = false};
+}
+
+Verb man_verb() {
+  return {.name = "man",
+          .purpose = "the manual page robomill(1)",
+          .example = "man -o robomill.1",
+          .readme = "robomill/jobs/README.md",
+          .input = word_option("format", "roff, or the table of the verbs in Markdown (default: roff)",
+                               {"roff", "markdown"}),
+          .computes = false};
+}
+
+}  // namespace
+
+std::vector<jobs::Verb> own_verbs() {
+  return {init_verb(), monitor_verb(), serve_verb(), completion_verb(), man_verb()};
+}
+
+}  // namespace robomill::app
