@@ -86,6 +86,33 @@ std::string smoothing_cell() {
   return test::slurp(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml");
 }
 
+/// Two links on springs, measured in one posture.
+constexpr const char* measured_cell = R"([robot]
+dh = [{ a_mm = 600, alpha_deg = 90 }, { a_mm = 400, alpha_deg = 90 }]
+joint_stiffness_n_m_per_rad = [4e5, 3e5]
+joint_damping_n_m_s_per_rad = [60, 40]
+links = [{ mass_kg = 40, inertia_kg_m2 = [1, 2, 2, 0, 0, 0] }, { mass_kg = 20, inertia_kg_m2 = [0.5, 1, 1, 0, 0, 0] }]
+[tool]
+length_mm = 150
+[[postures]]
+joints_deg = [0, 20]
+frf = "arm.csv"
+)";
+
+std::string arm_csv() {
+  std::string text = "frequency_hz,xx_re_m_per_n,xx_im_m_per_n,yy_re_m_per_n,yy_im_m_per_n\n";
+  for (int f = 5; f <= 125; f += 5) {
+    text += fmt::format("{}", f);
+    for (const double mode_hz : {18.0, 24.0}) {
+      const double ratio = f / mode_hz;
+      const std::complex<double> h = 2e-6 / std::complex<double>(1.0 - ratio * ratio, 0.08 * ratio);
+      text += fmt::format(",{},{}", h.real(), h.imag());
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 /// A slot of two blocks in a box.
 constexpr const char* slot_ngc = "G21 G90 G94\nS9000 M3\nG0 X-8 Y0 Z5\nG1 Z-1 F600\nG1 X0\nG1 X8\nG0 Z5\nM30\n";
 constexpr const char* slot_toml = R"([tool]
@@ -147,6 +174,7 @@ Files labelled_recordings() {
 Files inputs_of_verb(std::string_view verb) {
   if (verb == "init" || verb == "frf") return {};
   if (verb == "modes") return {{"tip.csv", one_mode()}, {"assembly.toml", assembly_toml()}};
+  if (verb == "modes --cell") return {{"cell.toml", measured_cell}, {"arm.csv", arm_csv()}};
   if (verb == "couple") return {{"assembly.toml", assembly_toml()}};
   if (verb == "couple --tools") {
     return {{"assembly.toml", assembly_toml()}, {"tools.csv", "tool,length_mm,diameter_mm\nbar,118,12\nshort,80,12\n"}};
@@ -200,6 +228,8 @@ Files inputs_of_verb(std::string_view verb) {
 
 constexpr const char* hits = "init hits --example --quiet";
 constexpr const char* tip = "couple assembly.toml -o tip.uff --quiet";
+constexpr const char* posture = "modes --cell cell.toml --joints 5,30 -o modes.json";
+constexpr const char* other_posture = "modes --cell cell.toml --joints 5,40 -o other.json --quiet";
 constexpr const char* example_forces = "init forces --example --quiet";
 
 }  // namespace
@@ -221,6 +251,8 @@ std::vector<Case> all_cases() {
       {"modes", "json from mat", "modes tip.mat --modes 2 --band 100,1500 -o modes.json",
        "couple assembly.toml -o tip.mat --quiet"},
       {"modes", "json from uff", "modes tip.uff --modes 2 --band 100,1500 -o modes.json", tip},
+      {"modes --cell", "json and a kept calibration", posture, "", is_new | goes_on},
+      {"modes --cell", "json from a kept calibration", posture, other_posture, goes_on},
       {"couple", "uff", "couple assembly.toml -o c.uff"},
       {"couple", "mat", "couple assembly.toml -o c.mat"},
       {"couple", "json", "couple assembly.toml -o c.json"},

@@ -1,6 +1,7 @@
 #include "testing/faults/judge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <iterator>
@@ -36,9 +37,10 @@ bool same_text(const std::string& one, const std::string& other) {
   return one == other || without_times(one) == without_times(other);
 }
 
-/// What the monitor says before it goes on without an input or a recording.
+/// What the monitor says before it goes on without an input or a recording, and who goes on without a kept calibration.
 bool says_failed(const std::string& text) {
-  return text.find("input-failed") != std::string::npos || text.find("recording-failed") != std::string::npos;
+  return std::ranges::any_of(std::array{"input-failed", "recording-failed", "could not be kept", "is made anew:"},
+                             [&](const char* said) { return text.find(said) != std::string::npos; });
 }
 
 /// Nothing could be said: kill -9, or a library that ends the program where it has no memory.
