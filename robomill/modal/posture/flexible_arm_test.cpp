@@ -127,7 +127,8 @@ TEST(ReceptanceLines, HaveTheSameBitsWhateverVectorsTheMachineHas) {
   };
   const std::vector<Complex> baseline = run(Kernels::baseline);
   for (const Kernels other : {Kernels::avx2, Kernels::avx512}) {
-    if (other <= best_kernels()) EXPECT_EQ(run(other), baseline);
+    if (other > best_kernels()) continue;
+    EXPECT_EQ(run(other), baseline);
   }
 }
 

@@ -20,13 +20,14 @@ constexpr double robust = 4.0;
 constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {1, 3}, {2, 6}, {4, 4}, {5, 7}, {8, 8}}};
 
 /// What a line's entries of one value of the model come to: weighted residual = root · slope · ∂H and this.
-struct Residual {
+struct WeightedResidual {
   double root = 0.0;    ///< of the weights; 0: not measured
   Complex slope = 1.0;  ///< of the residual by the model's value
   Complex value = 0.0;
 };
 
-Residual residual_of(Complex model, const SmoothedFrf& frf, Eigen::Index line, std::size_t pair, PostureNormal& out) {
+WeightedResidual residual_of(Complex model, const SmoothedFrf& frf, Eigen::Index line, std::size_t pair,
+                             PostureNormal& out) {
   double weights = 0.0;
   Complex weighted = 0.0, slope = 1.0;
   const bool on_diagonal = mirrored[pair][0] == mirrored[pair][1];
@@ -81,7 +82,7 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
       const Eigen::Index row = rows * batch + rows_a_pair * static_cast<Eigen::Index>(pair);
       for (std::size_t lane = 0; lane < here; ++lane) {
         const auto line = static_cast<Eigen::Index>(first + lane);
-        const Residual one = residual_of(model.value().at(pair, lane), frf, line, pair, out);
+        const WeightedResidual one = residual_of(model.value().at(pair, lane), frf, line, pair, out);
         if (!derivatives || one.root == 0.0) continue;
         const Eigen::Index at = row + static_cast<Eigen::Index>(lane);
         residual(at) = one.value.real();

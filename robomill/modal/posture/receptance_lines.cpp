@@ -7,8 +7,6 @@
 
 namespace robomill::modal::detail {
 
-using Kind = ArmParameter::Kind;
-
 /// Matrices column by column, complex lanes as pairs of Lanes.
 struct FlexibleArm::ReceptanceLines::Work {
   const System& system;
@@ -23,6 +21,8 @@ struct FlexibleArm::ReceptanceLines::Work {
 };
 
 namespace {
+
+using Kind = ArmParameter::Kind;
 
 #define CORE ROBOMILL_KERNEL_CORE
 
