@@ -84,7 +84,7 @@ void read_sources(io::TomlFile& file, Job& job) {
       throw file.reject(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
     }
   }
-  if (!job.judges_blocks()) file.require("job.lobes", "It names the cut: lobes.toml");
+  if (!job.judges_blocks() && job.lobes.empty()) file.require("job.lobes", "It names the cut: lobes.toml");
   if (sources == 0 && !job.lobes.empty()) {
     throw file.reject("job.lobes", "needs one of hits, frf, modes and assembly",
                       "Without lobes the blocks of the program are judged with what the cell knows");

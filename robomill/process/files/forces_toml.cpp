@@ -75,7 +75,9 @@ void read_robot(io::TomlFile& file, const std::filesystem::path& document, Force
   const bool has_cell = holds_arm || file.has("job.cell");
   if (!file.has("robot") && !has_cell) return;
   if (alone && has_cell && !file.has("robot.joints_deg")) return;  // no posture to cut in
-  if (!file.path("robot.cell", out.cell) && !file.path("job.cell", out.cell) && holds_arm) out.cell = document;
+  if (!file.path("robot.cell", out.cell) && has_cell) {
+    out.cell = file.has("job.cell") ? file.file_of_part("job.cell", "robot") : document;
+  }
   file.numbers("robot.joints_deg", "joints_rad", units::deg, out.joints_rad);
   std::vector<double> direction;
   if (file.numbers("robot.feed_direction", "feed_direction", 1.0, direction)) {
