@@ -27,7 +27,17 @@ void require_kept(const TomlFile& file, const std::string& path, const Rule& rul
   Rule in_si = rule;
   in_si.lowest *= factor;
   in_si.highest *= factor;
-  if (!in_si.keeps(value)) throw file.reject(path, rule.text());
+  if (!in_si.keeps(value)) throw file.reject(path, rule.text(), rule.hint);
+}
+
+/// Of each value of a list, by its place; a single value is a list of one.
+template <class M>
+void require_all_kept(const TomlFile& file, const std::string& path, const Rule& rule, double factor,
+                      const std::vector<M>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string entry = fmt::format("{}[{}]", path, i);
+    require_kept(file, file.has(entry) ? entry : path, rule, factor, values[i]);
+  }
 }
 
 void require_entries(const TomlFile& file, const std::string& path, const Rule& rule, std::size_t entries) {
@@ -70,7 +80,7 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
                 std::vector<double>& out) {
   if (!file.numbers(path, member, factor, out)) return false;
   require_entries(file, path, key.rule, out.size());
-  for (const double value : out) require_kept(file, path, key.rule, factor, value);
+  require_all_kept(file, path, key.rule, factor, out);
   return true;
 }
 
@@ -78,7 +88,7 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
                 std::vector<int>& out) {
   if (!file.integers(path, member, out)) return false;
   require_entries(file, path, key.rule, out.size());
-  for (const int value : out) require_kept(file, path, key.rule, 1.0, value);
+  require_all_kept(file, path, key.rule, 1.0, out);
   return true;
 }
 

@@ -35,6 +35,7 @@ struct Rule {
   double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
   bool above = false, below = false;  ///< the bound itself is excluded
   std::size_t entries = 0;            ///< of a list; 0: any number
+  std::string hint = {};              ///< the likely cause of a value that does not
   [[nodiscard]] bool keeps(double value) const;
   /// "must be > 0", "must lie between 0 and 1".
   [[nodiscard]] std::string text() const;
@@ -94,8 +95,9 @@ struct Row {
     key.rule.lowest = low;
     return *this;
   }
-  Row& at_most(double high) {
+  Row& at_most(double high, std::string hint = {}) {
     key.rule.highest = high;
+    key.rule.hint = std::move(hint);
     return *this;
   }
   Row& below(double high) {

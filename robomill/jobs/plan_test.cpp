@@ -21,6 +21,7 @@
 #include "testing/jobs/lobes_file.hpp"
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
+#include "testing/text.hpp"
 
 namespace robomill::jobs {
 namespace plan_test {
@@ -307,6 +308,11 @@ TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
 }
 
 TEST_F(Plan, AddsTheForcesOfACutAndHoldsTheSpindleAgainstThem) {
+  std::string lobes = io::read_file(folder_.at("lobes.toml"));
+  for (const auto& [from, to] : {std::pair{"\"up\"", "\"down\""}, {"= 1.8", "= 6"}, {"= 0.01", "= 0.1"}}) {
+    lobes = test_support::replaced(lobes, from, to);
+  }
+  write("lobes.toml", lobes);
   write("forces.toml", R"([tool]
 kind = "flat-end"
 teeth = 3
@@ -364,6 +370,7 @@ TEST_F(Plan, RejectsAKeyThatItsFilesGiveTwoValues) {
 
 // A slot of 40 mm in a block of 600 mm: the spindle feels the slot, Kt a b v = 1,620 W, not the mean over the block.
 TEST_F(Plan, HoldsTheSpindleAgainstASlotInALongBlock) {
+  write("lobes.toml", test_support::replaced(io::read_file(folder_.at("lobes.toml")), "= 712", "= 900"));
   write("forces.toml", R"([tool]
 kind = "flat-end"
 teeth = 3

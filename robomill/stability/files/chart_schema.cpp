@@ -6,6 +6,8 @@ namespace {
 using io::key;
 using io::Schema;
 
+constexpr const char* not_percent = "It is a share of the value, not a percentage";
+
 /// What a chart of a file may hold.
 constexpr Name<Output> outputs[] = {{"boundary", Output::boundary}, {"map", Output::map}};
 
@@ -33,18 +35,18 @@ const Schema<Uncertainty>& uncertainty_options_table() {
        key("radial_std_n_per_mm2", &Uncertainty::radial_std_n_per_m2, "standard deviation of Kr").at_least(0.0),
        key("coefficient_std_ratio", &Uncertainty::coefficient_std_ratio, "of one factor on all cutting coefficients")
            .at_least(0.0)
-           .at_most(1.0),
+           .at_most(1.0, not_percent),
        key("frequency_std_ratio", &Uncertainty::frequency_std_ratio,
            "of frequencies of modes that do not state their own")
            .at_least(0.0)
-           .at_most(0.5),
+           .at_most(0.5, not_percent),
        key("damping_std_ratio", &Uncertainty::damping_std_ratio,
            "of damping ratios of modes that do not state their own")
            .at_least(0.0)
-           .at_most(1.0),
+           .at_most(1.0, not_percent),
        key("residue_std_ratio", &Uncertainty::residue_std_ratio, "of residues of modes that do not state their own")
            .at_least(0.0)
-           .at_most(1.0)});
+           .at_most(1.0, not_percent)});
   return table;
 }
 
