@@ -209,7 +209,7 @@ describe('jobs', () => {
 describe('lobes', () => {
   it('offer the files of the folder', () => {
     expect(shown(<LobesView path="" />, { folder: { ...folder, files: [file('a.toml', 'lobes'), file('b.toml', 'lobes')] } })).toContain('href="#/lobes/b.toml"');
-    expect(shown(<LobesView path="" />, { folder: { ...folder, files: [] } })).toContain('robomill init lobes');
+    expect(shown(<LobesView path="" />, { folder: { ...folder, files: [] } })).toContain('robomill init job');
     expect(shown(<LobesView path="" />)).toContain('The first curve is being computed');
   });
   it('have sliders with label, number, lock and reset', () => {
