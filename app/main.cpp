@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -34,12 +36,12 @@ Exit run(const jobs::VerbJob& job, const Common& common, Progress& progress) {
   if (verb.run == nullptr) return value_in(own_runs, verb.name).value()(job, common, progress);
   if (verb.document && !job.output.empty()) jobs::require_output(*verb.document, job.output);
   const jobs::Outcome outcome = verb.run(job, progress);
-  if (common.to_stdout()) std::fputs(outcome.json.c_str(), stdout);
+  if (common.to_stdout()) fmt::print("{}", outcome.json);
   if (!common.report.empty()) {
     const page::Report page = outcome.page();
     write_report(common.report, page, verb.report != nullptr ? page.*verb.report : std::string());
   }
-  if (common.wants_summary()) std::fputs(outcome.summary.c_str(), stdout);
+  if (common.wants_summary()) fmt::print("{}", outcome.summary);
   return exit_of(outcome.shortfall);
 }
 

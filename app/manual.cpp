@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <string_view>
 #include <vector>
 
@@ -98,7 +97,7 @@ std::string option_words(const VerbGroup& group) {
 
 void write(const Common& common, const std::string& text) {
   if (common.output.empty() || common.to_stdout()) {
-    std::fputs(text.c_str(), stdout);
+    fmt::print("{}", text);
   } else {
     io::write_file(common.output, text);
   }
