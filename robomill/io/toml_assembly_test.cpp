@@ -123,7 +123,13 @@ TEST(TomlTables, AReaderLeavesThoseOfOthersAlone) {
   EXPECT_NE(rejected("lenght_mm = 80\n").find("tool.lenght_mm is not known here"), std::string::npos);
   EXPECT_NE(rejected("[spindel]\nmax_speed_rpm = 9000\n").find("spindel.max_speed_rpm is not known here"),
             std::string::npos);
-  EXPECT_TRUE(is_shared_key("robot.joint_max_jerk") && !is_shared_key("robot.jont_max_jerk"));
+  EXPECT_TRUE(shared_key("robot.joint_max_jerk") && !shared_key("robot.jont_max_jerk"));
+  // Whoever reads some of the keys of a joint reads all.
+  TomlFile cell(TomlSource("cell.toml", "[robot]\njoint_stifness = [1]\njoint_max_jerk = [2]\n"));
+  std::vector<double> jerk;
+  cell.numbers("robot.joint_max_jerk", "jerk", 1.0, jerk);
+  EXPECT_NE(rejection([&] { static_cast<void>(cell.done()); }).find("robot.joint_stifness is not known here"),
+            std::string::npos);
 }
 
 TEST(TomlTables, SampleValuesAreThoseThatWereRead) {

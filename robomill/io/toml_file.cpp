@@ -125,6 +125,11 @@ struct TomlFile::State {
   [[nodiscard]] bool is_of_others(const std::string& table) const {
     return is_known_table(table) && !known.contains(table) && !asked_below(table, ".") && !asked_below(table, "[");
   }
+  /// Whether another reader of its table knows a key that this one did not ask for.
+  [[nodiscard]] bool is_others_key(const std::string& key) const {
+    const std::optional<SharedKey> shared = shared_key(key);
+    return shared && !(shared->begins && asked_below(std::string(shared->name), ""));
+  }
   void set(const TomlSetting& setting);
   [[nodiscard]] std::string suggestion(std::string_view key) const;
   [[nodiscard]] InvalidInput unknown(const std::string& key) const;
@@ -472,7 +477,7 @@ void TomlFile::State::check_known(const toml::node& node, const std::string& key
     }
   } else if (list != nullptr) {
     for (std::size_t i = 0; i < list->size(); ++i) check_known((*list)[i], fmt::format("{}[{}]", key, i));
-  } else if (!is_shared_key(key)) {
+  } else if (!is_others_key(key)) {
     throw unknown(key);
   }
 }
@@ -483,7 +488,7 @@ std::vector<std::string> TomlFile::done() const {
 }
 
 void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
-  if (is_of_others(key) || (is_shared_key(key) && !known.contains(key))) return;
+  if (is_of_others(key) || (!known.contains(key) && is_others_key(key))) return;
   if (const toml::table* table = node.as_table()) {
     for (const auto& [name, value] : *table)
       compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);

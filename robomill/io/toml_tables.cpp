@@ -19,7 +19,7 @@ constexpr std::string_view tables[] = {
     // the monitor
     "signal", "process", "detector", "act", "mqtt", "metrics", "recording"};
 
-/// What several readers know a part of. A * ends the beginning of a key.
+/// Of tables that several readers know a part of. A * ends the beginning of keys that one reader knows.
 constexpr std::string_view shared_keys[] = {
     // the cutter, its edges' length, and what it is to the robot
     "tool.kind", "tool.teeth", "tool.diameter_mm", "tool.helix_deg", "tool.pitch_deg", "tool.runout_um",
@@ -40,18 +40,19 @@ constexpr std::string_view shared_keys[] = {
     "spindle.min_speed_rpm", "spindle.max_speed_rpm", "spindle.curve*", "spindle.output", "spindle.coolant_output",
     "spindle.spin_up_s"};
 
-bool names(std::string_view pattern, std::string_view key) {
-  return pattern.ends_with('*') ? key.starts_with(pattern.substr(0, pattern.size() - 1)) : key == pattern;
-}
-
 }  // namespace
 
 bool is_known_table(std::string_view name) {
   return std::ranges::find(tables, name) != std::end(tables);
 }
 
-bool is_shared_key(std::string_view key) {
-  return std::ranges::any_of(shared_keys, [&](std::string_view pattern) { return names(pattern, key); });
+std::optional<SharedKey> shared_key(std::string_view key) {
+  for (const std::string_view entry : shared_keys) {
+    const bool begins = entry.ends_with('*');
+    const std::string_view name = entry.substr(0, entry.size() - (begins ? 1 : 0));
+    if (begins ? key.starts_with(name) : key == name) return SharedKey{.name = name, .begins = begins};
+  }
+  return std::nullopt;
 }
 
 }  // namespace robomill::io

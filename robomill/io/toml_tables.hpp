@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string_view>
 
 namespace robomill::io {
@@ -7,8 +8,13 @@ namespace robomill::io {
 /// document, so that a reader leaves those of others alone.
 [[nodiscard]] bool is_known_table(std::string_view name);
 
-/// Whether a key has a meaning to some reader of a table that several readers know, each a part of it: "tool.teeth",
-/// "tool.mass_kg".
-[[nodiscard]] bool is_shared_key(std::string_view key);
+/// A key, or the beginning of several, that has a meaning to some reader of a table of which several know a part each:
+/// "tool.mass_kg", "robot.joint_".
+struct SharedKey {
+  std::string_view name = {};
+  bool begins = false;  ///< the keys that begin so are one reader's
+};
+/// That which a key is; nothing where no reader knows it.
+[[nodiscard]] std::optional<SharedKey> shared_key(std::string_view key);
 
 }  // namespace robomill::io
