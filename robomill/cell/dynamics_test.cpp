@@ -233,7 +233,7 @@ TEST(Posture, SaysThatModesCannotBeMatched) {
   const ModesOfPosture some = posture_modes(cell_with(mode(40), mode(900)), between);
   ASSERT_EQ(some.prediction.modes.modes.size(), 1U);
   EXPECT_EQ(some.unmatched, 1U);
-  EXPECT_EQ(posture_object(some)["unmatched_modes"], 1U);
+  EXPECT_EQ(posture_table().write(some)["unmatched_modes"], 1U);
   const std::vector<std::string> warnings = posture_warnings(some);
   ASSERT_FALSE(warnings.empty());
   EXPECT_NE(warnings[0].find("1 of the 2 modes of the nearest posture"), std::string::npos) << warnings[0];

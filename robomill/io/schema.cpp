@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+
+#include "robomill/io/append.hpp"
+#include "robomill/io/columns.hpp"
 
 namespace robomill::io {
 
@@ -99,27 +103,25 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& /*me
   return true;
 }
 
-Json write_value(double value, double factor) {
-  return number(value / factor);
+Json write_value(double value, const Shown& shown) {
+  const double out = value / shown.factor;
+  return shown.exact && std::isfinite(out) ? Json(out) : number(out);
 }
 
-Json write_value(const std::complex<double>& value, double /*factor*/) {
+Json write_value(const std::complex<double>& value, const Shown& /*shown*/) {
   return complex_number(value);
 }
 
-Json write_value(const std::filesystem::path& value, double /*factor*/) {
+Json write_value(const std::filesystem::path& value, const Shown& /*shown*/) {
   return text_or_null(value.string());
 }
 
-Json write_value(const Eigen::Ref<const Eigen::VectorXd>& values, double factor) {
-  return numbers_in(factor, values);
-}
-
-Json write_value(const Eigen::MatrixXd& values, double factor) {
+Json write_value(const Eigen::MatrixXd& values, const Shown& shown) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
-    const Eigen::VectorXd row = values.row(i).transpose();
-    rows.push_back(factor == 1.0 ? numbers(row) : numbers_in(factor, row));
+    Json row = Json::array();
+    for (const double value : values.row(i)) row.push_back(write_value(value, shown));
+    rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -128,109 +130,168 @@ Json write_value(const Eigen::MatrixXd& values, double factor) {
 
 namespace {
 
-Json schema_of(const TableInfo& table);
-
-/// Of one value.
-Json value_schema(const Key& key) {
-  Json out = Json::object();
-  switch (key.holds) {
-    case Holds::number:
-      out["type"] = "number";
-      break;
-    case Holds::integer:
-      out["type"] = "integer";
-      break;
-    case Holds::boolean:
-      out["type"] = "boolean";
-      break;
-    case Holds::text:
-    case Holds::path:
-      out["type"] = "string";
-      break;
-    case Holds::word:
-      out["type"] = "string";
-      out["enum"] = key.words;
-      break;
-    case Holds::complex:
-      return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
-    case Holds::table:
-      return schema_of(*key.table);
-  }
-  if (std::isfinite(key.rule.lowest)) out[key.rule.above ? "exclusiveMinimum" : "minimum"] = key.rule.lowest;
-  if (std::isfinite(key.rule.highest)) out[key.rule.below ? "exclusiveMaximum" : "maximum"] = key.rule.highest;
-  return out;
-}
-
-/// The same, or null. Numbers that are not finite are null wherever they stand.
-Json or_null(Json schema) {
-  if (schema.contains("enum")) schema["enum"].push_back(nullptr);
-  if (schema.contains("type") && schema["type"].is_string()) {
-    schema["type"] = Json::array({schema["type"], "null"});
-    return schema;
-  }
-  return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
-}
-
-Json key_schema(const Key& key) {
-  Json out = value_schema(key);
-  if (key.nullable) out = or_null(std::move(out));
-  for (int i = 0; i < key.lists; ++i) {
-    Json list = {{"type", "array"}, {"items", out}};
-    if (i == 0 && key.rule.entries > 0) list["minItems"] = list["maxItems"] = key.rule.entries;
-    out = key.or_one ? Json{{"anyOf", Json::array({std::move(out), std::move(list)})}} : std::move(list);
-  }
-  const std::string unit = key.unit();
-  out["description"] = unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, unit);
-  if (!key.default_value.is_null()) out["default"] = key.default_value;
-  return out;
-}
-
-Json schema_of(const TableInfo& table) {
-  Json properties = Json::object(), required = Json::array();
-  for (const Key& key : table.keys) {
-    properties[key.name] = key_schema(key);
-    if (key.required) required.push_back(key.name);
-  }
-  Json out = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-  if (!required.empty()) out["required"] = std::move(required);
-  return out;
-}
-
-void add_rows(const TableInfo& table, const std::string& before, std::string& out) {
-  for (const Key& key : table.keys) {
-    const std::string name = before + key.name + (key.lists > 0 && key.holds == Holds::table ? "[]" : "");
-    if (key.holds == Holds::table) {
-      out += fmt::format("| `{}` | | | {} |\n", name, key.meaning);
-      add_rows(*key.table, name + ".", out);
-      continue;
+/// A schema of every table that a document holds, by its name.
+class Definitions {
+ public:
+  Json properties_of(const TableInfo& table) {
+    Json properties = Json::object(), required = Json::array();
+    if (table.version > 0) {
+      properties["document"] = {{"const", table.document()}, {"description", "what this document is"}};
+      required.push_back("document");
     }
+    for (const Key& key : table.keys) {
+      properties[key.name] = key_schema(key);
+      if (key.required) required.push_back(key.name);
+    }
+    Json out = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    if (!required.empty()) out["required"] = std::move(required);
+    return out;
+  }
+  Json take() { return std::move(tables_); }
+
+ private:
+  /// Of one value.
+  Json value_schema(const Key& key) {
+    Json out = Json::object();
+    switch (key.holds) {
+      case Holds::number:
+        out["type"] = "number";
+        break;
+      case Holds::integer:
+        out["type"] = "integer";
+        break;
+      case Holds::boolean:
+        out["type"] = "boolean";
+        break;
+      case Holds::text:
+      case Holds::path:
+        out["type"] = "string";
+        break;
+      case Holds::word:
+        out["type"] = "string";
+        out["enum"] = key.words;
+        break;
+      case Holds::complex:
+        return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+      case Holds::table:
+        return reference(*key.table);
+    }
+    if (std::isfinite(key.rule.lowest)) out[key.rule.above ? "exclusiveMinimum" : "minimum"] = key.rule.lowest;
+    if (std::isfinite(key.rule.highest)) out[key.rule.below ? "exclusiveMaximum" : "maximum"] = key.rule.highest;
+    return out;
+  }
+
+  Json reference(const TableInfo& table) {
+    if (!tables_.contains(table.name)) {
+      tables_[table.name] = nullptr;  // its place, before those that it holds
+      Json schema = {{"description", table.meaning}};
+      schema.update(properties_of(table));
+      tables_[table.name] = std::move(schema);
+    }
+    return {{"$ref", "#/$defs/" + table.name}};
+  }
+
+  /// The same, or null. Numbers that are not finite are null wherever they stand.
+  static Json or_null(Json schema) {
+    if (schema.contains("enum")) schema["enum"].push_back(nullptr);
+    if (schema.contains("type") && schema["type"].is_string()) {
+      schema["type"] = Json::array({schema["type"], "null"});
+      return schema;
+    }
+    return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
+  }
+
+  Json key_schema(const Key& key) {
+    Json out = value_schema(key);
+    if (key.nullable) out = or_null(std::move(out));
+    for (int i = 0; i < key.lists; ++i) {
+      Json list = {{"type", "array"}, {"items", out}};
+      if (i == 0 && key.rule.entries > 0) list["minItems"] = list["maxItems"] = key.rule.entries;
+      out = key.or_one ? Json{{"anyOf", Json::array({std::move(out), std::move(list)})}} : std::move(list);
+    }
+    if (key.named) out = {{"type", "object"}, {"additionalProperties", std::move(out)}};
+    if (key.null_list) out = or_null(std::move(out));
+    const std::string unit = key.unit();
+    out["description"] = unit.empty() ? key.meaning : fmt::format("{} [{}]", key.meaning, unit);
+    if (!key.default_value.is_null()) out["default"] = key.default_value;
+    return out;
+  }
+
+  Json tables_ = Json::object();
+};
+
+/// A text in a cell of a table.
+std::string in_cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
+/// What is said of a key beside its unit: of a document that people write its default, of another whether it is there.
+std::string presence(const Key& key, Use use) {
+  if (use == Use::written) return key.required ? key.nullable || key.null_list ? "null: none" : "" : "on occasion";
+  if (key.required) return "required";
+  return key.default_value.is_null() ? "" : key.default_value.dump();
+}
+
+/// @param seen  where each table stands already, which is not listed again
+void add_markdown(const TableInfo& table, const std::string& before, std::map<const TableInfo*, std::string>& seen,
+                  std::string& out) {
+  for (const Key& key : table.keys) {
+    const std::string name = before + key.name +
+                             (key.named                                    ? ".*"
+                              : key.lists > 0 && key.holds == Holds::table ? "[]"
+                                                                           : "");
     std::string values = key.unit();
     for (const std::string& word : key.words) values += fmt::format("{}`{}`", values.empty() ? "" : " ", word);
-    const std::string without = key.required ? "required" : key.default_value.is_null() ? "" : key.default_value.dump();
-    out += fmt::format("| `{}` | {} | {} | {} |\n", name, values, without, key.meaning);
+    std::string meaning = key.meaning;
+    const bool first = key.holds == Holds::table && seen.emplace(key.table, name).second;
+    if (key.holds == Holds::table && !first) meaning += fmt::format("; keys as of `{}`", seen.at(key.table));
+    out +=
+        fmt::format("| `{}` | {} | {} | {} |\n", name, values, presence(key, table.use), in_cell(std::move(meaning)));
+    if (first) add_markdown(*key.table, name + ".", seen, out);
   }
 }
 
 }  // namespace
 
-Json json_schema(const TableInfo& document, int version) {
+void append_cell(std::string& line, const Json& cell) {
+  if (cell.is_null()) return;
+  if (cell.is_string()) {
+    append(line, "\"{}\"", cell.get_ref<const std::string&>());
+  } else if (cell.is_number_float()) {
+    append(line, "{:.9g}", cell.get<double>());
+  } else {
+    line += cell.dump();
+  }
+}
+
+const Schema<Assumption>& assumption_table() {
+  static const Schema<Assumption> table(
+      "assumption", "what was taken because the input did not give it",
+      {key("what", &Assumption::what, "of what"), key("taken", &Assumption::taken, "in words"),
+       key("key", &Assumption::key, "that sets it; none: nothing can be given").nullable(),
+       key("file", &Assumption::file, "of that key; none: an option of the command line").nullable()},
+      Use::written);
+  return table;
+}
+
+Json json_schema(const TableInfo& document) {
   Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"$id", fmt::format("https://robomill.org/schema/{}-{}.json", document.name, version)},
+              {"$id", fmt::format("urn:robomill:{}:{}", document.name, document.version)},
               {"title", document.name},
               {"description", document.meaning}};
-  Json table = schema_of(document);
-  Json properties = {{"document", {{"const", fmt::format("{}/{}", document.name, version)}}}};
-  properties.update(table["properties"]);
-  table["properties"] = std::move(properties);
-  if (!table.contains("required")) table["required"] = Json::array();
-  table["required"].insert(table["required"].begin(), "document");
-  out.update(table);
+  Definitions definitions;
+  out.update(definitions.properties_of(document));
+  if (Json tables = definitions.take(); !tables.empty()) out["$defs"] = std::move(tables);
   return out;
 }
 
-std::string markdown_rows(const TableInfo& table) {
-  std::string out;
-  add_rows(table, "", out);
+std::string markdown_table(const TableInfo& table) {
+  std::string out = fmt::format("| key | unit, values | {} | meaning |\n|---|---|---|---|\n",
+                                table.use == Use::written ? "" : "default");
+  if (table.version > 0) out += fmt::format("| `document` | `{}` | | |\n", table.document());
+  std::map<const TableInfo*, std::string> seen;
+  add_markdown(table, "", seen, out);
   return out;
 }
 

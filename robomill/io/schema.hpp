@@ -47,10 +47,12 @@ struct TableInfo;
 struct Key {
   std::string name = {};
   Holds holds = Holds::text;
-  int lists = 0;          ///< 1: a list of them, 2: a list of lists
-  bool or_one = false;    ///< in place of a list one value, for all of its entries
-  bool required = false;  ///< a reader rejects a table without it; a writer always writes it
-  bool nullable = false;  ///< null: not known, none
+  int lists = 0;           ///< 1: a list of them, 2: a list of lists
+  bool named = false;      ///< an object of them, by names that differ from document to document
+  bool or_one = false;     ///< in place of a list one value, for all of its entries
+  bool required = false;   ///< a reader rejects a table without it; a writer always writes it
+  bool nullable = false;   ///< null: not known, none; of a list its entries
+  bool null_list = false;  ///< the list itself may be null
   Rule rule = {};
   std::vector<std::string> words = {};  ///< of Holds::word
   const TableInfo* table = nullptr;     ///< of Holds::table
@@ -65,6 +67,10 @@ struct TableInfo {
   std::string name = {};     ///< "lobes", "tool"
   std::string meaning = {};  ///< a phrase
   std::vector<Key> keys = {};
+  Use use = Use::read;
+  int version = 0;  ///< of a document: how often its keys have changed their meaning, from 1; 0: no document of its own
+  /// "lobes/1", as a document names itself in its key `document`.
+  [[nodiscard]] std::string document() const { return name + "/" + std::to_string(version); }
 };
 
 template <class T>
@@ -74,8 +80,9 @@ class Schema;
 template <class T>
 struct Row {
   Key key = {};
-  std::string member = {};                                                            ///< in errors about SI members
-  double factor = 1.0;                                                                ///< SI value = factor * value
+  std::string member = {};   ///< in errors about SI members
+  double factor = 1.0;       ///< SI value = factor * value
+  bool every_digit = false;  ///< of numbers that are written; else 15 significant ones
   std::function<void(TomlFile&, const std::string& path, const Row&, T&)> read = {};  ///< empty: written only
   std::function<Json(const T&, const Row&)> write = {};
   bool always = true;       ///< the key is written of every object
@@ -109,15 +116,36 @@ struct Row {
     key.rule.entries = count;
     return *this;
   }
-  /// Null where the value is not known.
+  /// Null where the value is not known; a text where it is empty.
   Row& nullable() {
     key.nullable = true;
+    return *this;
+  }
+  /// Null in place of a whole list.
+  Row& null_list() {
+    key.null_list = true;
     return *this;
   }
   /// Left out where the value is not known, or empty.
   Row& optional() {
     always = false;
     drops_null = true;
+    return *this;
+  }
+  /// One of a few words.
+  Row& words(std::vector<std::string> known) {
+    key.holds = Holds::word;
+    key.words = std::move(known);
+    return *this;
+  }
+  /// The function gives numbers in the key's unit.
+  Row& in_unit() {
+    factor = 1.0;
+    return *this;
+  }
+  /// Numbers are written as they are, not rounded to 15 significant digits.
+  Row& exact() {
+    every_digit = true;
     return *this;
   }
   /// The member's name where it is not the key's.
@@ -148,6 +176,10 @@ struct Holding<std::string> {
   static constexpr int lists = 0;
 };
 template <>
+struct Holding<std::string_view> : Holding<std::string> {};
+template <>
+struct Holding<const char*> : Holding<std::string> {};
+template <>
 struct Holding<std::filesystem::path> {
   static constexpr Holds holds = Holds::path;
   static constexpr int lists = 0;
@@ -164,12 +196,29 @@ struct Holding<std::vector<M>> {
   static constexpr Holds holds = Holding<M>::holds;
   static constexpr int lists = Holding<M>::lists + 1;
 };
+template <class M>
+struct Holding<std::vector<std::pair<std::string, M>>> : Holding<M> {};
 template <class M, std::size_t n>
 struct Holding<std::array<M, n>> : Holding<std::vector<M>> {};
 template <int n>
 struct Holding<Eigen::Matrix<double, n, 1>> : Holding<std::vector<double>> {};
 template <>
 struct Holding<Eigen::MatrixXd> : Holding<std::vector<std::vector<double>>> {};
+
+/// Whether values stand by names that differ from document to document.
+template <class M>
+inline constexpr bool is_named = false;
+template <class M>
+inline constexpr bool is_named<std::vector<std::pair<std::string, M>>> = true;
+
+/// What a function of an object takes and gives.
+template <class F>
+struct Getter : Getter<decltype(&F::operator())> {};
+template <class F, class R, class T>
+struct Getter<R (F::*)(T) const> {
+  using Object = std::remove_cvref_t<T>;
+  using Value = std::remove_cvref_t<R>;
+};
 
 /// Of each kind of member how it is read and written.
 /// @throws InvalidInput by TomlFile::reject where a value breaks the rule
@@ -207,29 +256,46 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
   return true;
 }
 
-Json write_value(double value, double factor);
-Json write_value(const std::complex<double>& value, double factor);
-Json write_value(const std::filesystem::path& value, double factor);
-Json write_value(const Eigen::Ref<const Eigen::VectorXd>& values, double factor);
+/// How numbers are shown.
+struct Shown {
+  double factor = 1.0;
+  bool exact = false;
+};
+Json write_value(double value, const Shown& shown);
+Json write_value(const std::complex<double>& value, const Shown& shown);
+Json write_value(const std::filesystem::path& value, const Shown& shown);
 /// A row of the matrix a list.
-Json write_value(const Eigen::MatrixXd& values, double factor);
+Json write_value(const Eigen::MatrixXd& values, const Shown& shown);
 template <class M>
-requires std::is_integral_v<M> Json write_value(M value, double /*factor*/) {
+requires std::is_integral_v<M> Json write_value(M value, const Shown& /*shown*/) {
   return value;
 }
-inline Json write_value(const std::string& value, double /*factor*/) {
+inline Json write_value(const std::string& value, const Shown& /*shown*/) {
+  return value;
+}
+inline Json write_value(std::string_view value, const Shown& /*shown*/) {
+  return value;
+}
+inline Json write_value(const char* value, const Shown& /*shown*/) {
   return value;
 }
 template <class M>
-Json write_value(const std::optional<M>& value, double factor) {
-  return value ? write_value(*value, factor) : Json();
+Json write_value(const std::optional<M>& value, const Shown& shown) {
+  return value ? write_value(*value, shown) : Json();
+}
+/// An object of values by their names.
+template <class M>
+Json write_value(const std::vector<std::pair<std::string, M>>& named, const Shown& shown) {
+  Json out = Json::object();
+  for (const auto& [name, value] : named) out[name] = write_value(value, shown);
+  return out;
 }
 template <class List>
 requires requires(const List& list) {
   list.begin();
-} &&(!std::is_convertible_v<List, std::string_view>)Json write_value(const List& list, double factor) {
+} &&(!std::is_convertible_v<List, std::string_view>)Json write_value(const List& list, const Shown& shown) {
   Json out = Json::array();
-  for (const auto& value : list) out.push_back(write_value(value, factor));
+  for (const auto& value : list) out.push_back(write_value(value, shown));
   return out;
 }
 
@@ -254,7 +320,7 @@ template <class T, class M>
     };
   }
   row.write = [member](const T& object, const Row<T>& self) {
-    return detail::write_value(object.*member, self.factor);
+    return detail::write_value(object.*member, {self.factor, self.every_digit});
   };
   return row;
 }
@@ -272,18 +338,50 @@ template <class T, class E, std::size_t n>
 }
 
 /// A key that is written from the whole object.
-template <class T>
-[[nodiscard]] Row<T> computed(std::string name, Holds holds, std::function<Json(const T&)> value, std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = holds, .meaning = std::move(meaning)}};
-  row.write = [value = std::move(value)](const T& object, const Row<T>&) { return value(object); };
+/// @param value  (const T&) -> number, text, list, …, in SI
+template <class F>
+requires requires {
+  &F::operator();
+}
+[[nodiscard]] auto key(std::string name, F value, std::string meaning) {
+  using T = typename detail::Getter<F>::Object;
+  using M = typename detail::Getter<F>::Value;
+  const double factor = key_unit(name).factor;
+  Row<T> row{.key = {.name = std::move(name),
+                     .holds = detail::Holding<M>::holds,
+                     .lists = detail::Holding<M>::lists,
+                     .named = detail::is_named<M>,
+                     .meaning = std::move(meaning)},
+             .factor = factor};
+  row.write = [value](const T& object, const Row<T>& self) {
+    return detail::write_value(value(object), {self.factor, self.every_digit});
+  };
+  return row;
+}
+
+/// The same, one word of a list.
+/// @param value  (const T&) -> E
+template <class F, class E, std::size_t n>
+requires requires {
+  &F::operator();
+}
+[[nodiscard]] auto key(std::string name, F value, const Name<E> (&names)[n], std::string meaning) {
+  using T = typename detail::Getter<F>::Object;
+  Row<T> row{.key = {.name = std::move(name), .holds = Holds::word, .meaning = std::move(meaning)}};
+  for (const auto& [word, known] : names) row.key.words.emplace_back(word);
+  row.write = [value, &names](const T& object, const Row<T>&) { return text_or_null(name_in(names, value(object))); };
   return row;
 }
 
 /// A key of the table that a member is, as one of the object's own.
 template <class T, class U>
 [[nodiscard]] Row<T> of(U T::*part, Row<U> row) {
-  Row<T> out{
-      .key = row.key, .member = row.member, .factor = row.factor, .always = row.always, .drops_null = row.drops_null};
+  Row<T> out{.key = row.key,
+             .member = row.member,
+             .factor = row.factor,
+             .every_digit = row.every_digit,
+             .always = row.always,
+             .drops_null = row.drops_null};
   if (row.read) {
     out.read = [part, row](TomlFile& file, const std::string& path, const Row<T>& self, T& object) {
       Row<U> named = row;
@@ -293,6 +391,11 @@ template <class T, class U>
   }
   out.write = [part, row](const T& object, const Row<T>&) { return row.write(object.*part, row); };
   return out;
+}
+
+/// None where it is not > 0: unknown, none.
+[[nodiscard]] inline std::optional<double> if_positive(double value) {
+  return value > 0.0 ? std::optional(value) : std::nullopt;
 }
 
 /// What a row writes to leave its key out.
@@ -315,11 +418,14 @@ template <class T, class Condition>
 template <class T>
 class Schema {
  public:
-  /// @param use  Use::written: no default counts, and a key is required that is written of every object
-  Schema(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read)
+  /// @param use      Use::written: no default counts, and a key is required that is written of every object
+  /// @param version  of a document
+  Schema(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read, int version = 0)
       : rows_(std::move(rows)) {
     info_.name = std::move(name);
     info_.meaning = std::move(meaning);
+    info_.use = use;
+    info_.version = version;
     info_.keys.reserve(rows_.size());
     const T fresh{};
     for (Row<T>& row : rows_) {
@@ -349,10 +455,19 @@ class Schema {
     }
   }
 
+  /// Of one key; discarded: it says nothing of this object.
+  [[nodiscard]] Json value(const Row<T>& row, const T& object) const {
+    Json out = row.write(object, row);
+    const bool none = row.key.nullable && out.is_string() && out.template get_ref<const std::string&>().empty();
+    return none ? Json() : out;
+  }
+
+  /// The keys in their order; before them what the document is.
   [[nodiscard]] Json write(const T& object) const {
     Json out = Json::object();
+    if (info_.version > 0) out["document"] = info_.document();
     for (const Row<T>& row : rows_) {
-      Json value = row.write(object, row);
+      Json value = this->value(row, object);
       if (value.is_discarded()) continue;
       if (row.drops_null && (value.is_null() || (value.is_structured() && value.empty()))) continue;
       out[row.key.name] = std::move(value);
@@ -413,50 +528,99 @@ template <class T, class U>
   return row;
 }
 
-/// A table that a pointer of the object leads to; left out where that is null. Written only.
-template <class T, class U>
-[[nodiscard]] Row<T> part(std::string name, const U* T::*member, const Schema<U>& table, std::string meaning) {
-  Row<T> row{
-      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
-  row.write = [member, &table](const T& object, const Row<T>&) {
-    return object.*member != nullptr ? table.write(*(object.*member)) : absent();
-  };
+namespace detail {
+
+template <class U>
+Json write_table(const Schema<U>& table, const U& object) {
+  return table.write(object);
+}
+template <class U>
+Json write_table(const Schema<U>& table, const U* object) {
+  return object != nullptr ? table.write(*object) : Json();
+}
+template <class U>
+Json write_table(const Schema<U>& table, const std::optional<U>& object) {
+  return object ? table.write(*object) : Json();
+}
+template <class U>
+Json write_table(const Schema<U>& table, const std::vector<U>& objects) {
+  Json out = Json::array();
+  for (const U& one : objects) out.push_back(table.write(one));
+  return out;
+}
+template <class U>
+Json write_table(const Schema<U>& table, const std::vector<std::pair<std::string, U>>& named) {
+  Json out = Json::object();
+  for (const auto& [name, one] : named) out[name] = table.write(one);
+  return out;
+}
+template <class M>
+inline constexpr int table_lists = 0;
+template <class U>
+inline constexpr int table_lists<std::vector<U>> = 1;
+template <class U>
+inline constexpr int table_lists<std::vector<std::pair<std::string, U>>> = 0;
+
+}  // namespace detail
+
+/// A key that holds a table, or a list of them, written from the whole object.
+/// @param value  (const T&) -> U, a vector of U or of names with U, const U* or std::optional<U>: null where there is
+///     none
+template <class F, class U>
+requires requires {
+  &F::operator();
+}
+[[nodiscard]] auto key(std::string name, F value, const Schema<U>& table, std::string meaning) {
+  using T = typename detail::Getter<F>::Object;
+  Row<T> row{.key = {.name = std::move(name),
+                     .holds = Holds::table,
+                     .lists = detail::table_lists<typename detail::Getter<F>::Value>,
+                     .named = detail::is_named<typename detail::Getter<F>::Value>,
+                     .table = &table.info(),
+                     .meaning = std::move(meaning)}};
+  row.write = [value, &table](const T& object, const Row<T>&) { return detail::write_table(table, value(object)); };
   return row;
 }
 
+/// A table that a pointer of the object leads to; null where there is none. Written only.
+template <class T, class U>
+[[nodiscard]] Row<T> key(std::string name, const U* T::*member, const Schema<U>& table, std::string meaning) {
+  return key(
+      std::move(name), [member](const T& object) { return object.*member; }, table, std::move(meaning));
+}
+
+/// Rows after others.
+template <class T>
+void add_rows(std::vector<Row<T>>& rows, std::vector<Row<T>> more) {
+  for (Row<T>& row : more) rows.push_back(std::move(row));
+}
+
 /// The keys of another table, written from a part of the object.
-/// @param part  the part of an object: const U& (const T&)
+/// @param part  (const T&) -> the part of an object
 template <class T, class U, class Part>
 [[nodiscard]] std::vector<Row<T>> keys_of(const std::vector<Row<U>>& rows, Part part) {
   std::vector<Row<T>> out;
   out.reserve(rows.size());
   for (const Row<U>& row : rows) {
-    Row<T> lifted{
-        .key = row.key, .member = row.member, .factor = row.factor, .always = row.always, .drops_null = row.drops_null};
+    Row<T> lifted{.key = row.key,
+                  .member = row.member,
+                  .factor = row.factor,
+                  .every_digit = row.every_digit,
+                  .always = row.always,
+                  .drops_null = row.drops_null};
     lifted.write = [row, part](const T& object, const Row<T>&) { return row.write(part(object), row); };
     out.push_back(std::move(lifted));
   }
   return out;
 }
 
-/// A kind of document: what it holds, and how often its keys have changed their meaning. A document of version 1 of
-/// lobes names itself "lobes/1", in its key `document`.
-template <class T>
-struct Document {
-  const Schema<T>& table;
-  int version = 1;
-  [[nodiscard]] std::string name() const { return table.info().name + "/" + std::to_string(version); }
-  [[nodiscard]] Json write(const T& object) const {
-    Json out = {{"document", name()}};
-    out.update(table.write(object));
-    return out;
-  }
-};
+/// A table of what was assumed: `assumed` of every document.
+[[nodiscard]] const Schema<Assumption>& assumption_table();
 
-/// The JSON Schema (draft 2020-12) of a document.
-[[nodiscard]] Json json_schema(const TableInfo& document, int version);
+/// The JSON Schema (draft 2020-12) of a document; of a table that is none, without its `document` key.
+[[nodiscard]] Json json_schema(const TableInfo& document);
 
-/// The rows of docs/formats.md: "| `key` | unit, values | default | meaning |", nested tables by their paths.
-[[nodiscard]] std::string markdown_rows(const TableInfo& table);
+/// The table of docs/formats.md: "| `key` | unit, values | default | meaning |", nested tables by their paths.
+[[nodiscard]] std::string markdown_table(const TableInfo& table);
 
 }  // namespace robomill::io

@@ -5,13 +5,12 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
-#include "robomill/cell/files/posture_json.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/in_words.hpp"
+#include "robomill/jobs/files/lobes_schema.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/stability/files/lobes_csv.hpp"
-#include "robomill/stability/files/lobes_json.hpp"
-#include "robomill/stability/files/lobes_object.hpp"
+#include "robomill/stability/files/lobes_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -70,11 +69,9 @@ std::string lobes_table(const LobesJobResult& result) {
 }
 
 std::string lobes_document(const LobesJobResult& result) {
-  if (result.sweep) return stability::sweep_json(*result.sweep);
-  if (result.comparison) return stability::comparison_json(*result.comparison);
-  io::Json json = stability::lobes_object(result.lobes, result.uncertain, result.surface);
-  if (result.cut.posture) json["posture"] = cell::posture_object(*result.cut.posture);
-  return io::dump(json);
+  if (result.sweep) return io::dump(stability::sweep_table().write(*result.sweep));
+  if (result.comparison) return io::dump(stability::comparison_table().write(*result.comparison));
+  return io::dump(lobes_json_table().write(result));
 }
 
 }  // namespace robomill::jobs

@@ -88,7 +88,7 @@ page::Report page_of(const cell::ModesOfPosture& result) {
 page::Report page_of(const TipPrediction& result) {
   page::Report page = titled("Tool in its holder", summary(result));
   page.frf = modal::frf_json(result.tip.frfs);
-  page.assembly = io::dump(prediction_object(result));
+  page.assembly = io::dump(assembly_table().write(result));
   if (result.measured) page.measured = modal::frf_json(*result.measured);
   page.assumed = result.file.assumed;
   return page;

@@ -111,14 +111,7 @@ class WithoutDelay {
 }  // namespace
 
 std::string_view to_string(ChatterMechanism::Kind kind) {
-  switch (kind) {
-    case ChatterMechanism::Kind::regenerative:
-      return "regenerative";
-    case ChatterMechanism::Kind::mode_coupling:
-      return "mode coupling";
-    default:
-      return "stable";
-  }
+  return name_in(mechanism_names, kind);
 }
 
 ChatterMechanism chatter_mechanism(const LobesProblem& problem, const OperatingPoint& point) {

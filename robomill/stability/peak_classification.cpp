@@ -221,43 +221,15 @@ void PeakClassificationOptions::validate() const {
 }
 
 std::string_view to_string(Explanation::Kind kind) {
-  switch (kind) {
-    case Named::tooth_passing:
-      return "tooth passing";
-    case Named::rotation:
-      return "rotation";
-    case Named::chatter:
-      return "chatter";
-    case Named::cut_or_chatter:
-      return "cut or chatter";
-    case Named::unexplained:
-      break;
-  }
-  return "unexplained";
+  return name_in(explanation_names, kind);
 }
 
 std::string_view to_string(ExplainedPeak::State state) {
-  switch (state) {
-    case ExplainedPeak::State::named:
-      return "named";
-    case ExplainedPeak::State::ambiguous:
-      return "ambiguous";
-    case ExplainedPeak::State::unexplained:
-      break;
-  }
-  return "unexplained";
+  return name_in(peak_state_names, state);
 }
 
 std::string_view to_string(PeakClassification::State state) {
-  switch (state) {
-    case PeakClassification::State::named:
-      return "named";
-    case PeakClassification::State::ambiguous:
-      return "ambiguous";
-    case PeakClassification::State::no_chatter:
-      break;
-  }
-  return "no chatter";
+  return name_in(classification_names, state);
 }
 
 PeakClassification explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool,

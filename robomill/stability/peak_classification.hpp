@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -80,6 +81,18 @@ struct PeakClassification {
   double chatter_frequency_hz = std::numeric_limits<double>::quiet_NaN();  ///< mean of the peaks that name it; or NaN
 };
 
+inline constexpr Name<Explanation::Kind> explanation_names[] = {{"tooth passing", Explanation::Kind::tooth_passing},
+                                                                {"rotation", Explanation::Kind::rotation},
+                                                                {"chatter", Explanation::Kind::chatter},
+                                                                {"cut or chatter", Explanation::Kind::cut_or_chatter},
+                                                                {"unexplained", Explanation::Kind::unexplained}};
+inline constexpr Name<ExplainedPeak::State> peak_state_names[] = {{"named", ExplainedPeak::State::named},
+                                                                  {"ambiguous", ExplainedPeak::State::ambiguous},
+                                                                  {"unexplained", ExplainedPeak::State::unexplained}};
+inline constexpr Name<PeakClassification::State> classification_names[] = {
+    {"named", PeakClassification::State::named},
+    {"ambiguous", PeakClassification::State::ambiguous},
+    {"no chatter", PeakClassification::State::no_chatter}};
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Explanation::Kind kind);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(ExplainedPeak::State state);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(PeakClassification::State state);
@@ -109,6 +122,10 @@ struct ChatterMechanism {
   double chatter_frequency_hz = 0.0;  ///< of the cut with the delay
   modal::ModeId mode = {};            ///< the same
 };
+inline constexpr Name<ChatterMechanism::Kind> mechanism_names[] = {
+    {"stable", ChatterMechanism::Kind::stable},
+    {"regenerative", ChatterMechanism::Kind::regenerative},
+    {"mode coupling", ChatterMechanism::Kind::mode_coupling}};
 [[nodiscard]] ROBOMILL_API std::string_view to_string(ChatterMechanism::Kind kind);
 
 /// Regenerative: unstable, and stable once the delayed displacement is left out of the force. Mode coupling: unstable

@@ -124,7 +124,7 @@ Json workpiece_json(const Eigen::Isometry3d& workpiece) {
 void add_choice(const CellCheck& check, const path::PostureChoice& choice, Json& out) {
   const std::vector<double>& gamma_rad = choice.posture.gamma_rad;
   out["margin"] = io::number(choice.margin.least);
-  out["posture"] = path::posture_object(choice, check.joints, check.prismatic);
+  out["posture"] = path::posture_table().write({&choice, check.joints, &check.prismatic});
   out["margin_joint"] = choice.margin.joint < 0 ? io::Json() : io::Json(choice.margin.joint + 1);
   if (check.cell.hybrid || gamma_rad.empty()) {
     out["gamma_deg"] = nullptr;

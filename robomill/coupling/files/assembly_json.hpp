@@ -1,13 +1,11 @@
 #pragma once
-#include <vector>
-
 #include "robomill/coupling/assembly.hpp"
-#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
 
 namespace robomill::coupling {
 
 /// In the keys of assembly.toml.
-[[nodiscard]] io::Json segments_json(const std::vector<Segment>& segments);
-[[nodiscard]] io::Json joint_json(const Joint& joint);
+[[nodiscard]] const io::Schema<Segment>& segment_table();
+[[nodiscard]] const io::Schema<Joint>& assembly_joint_table();
 
 }  // namespace robomill::coupling

@@ -14,6 +14,10 @@
 namespace robomill::coupling {
 namespace {
 
+using io::key;
+using io::Row;
+using io::Schema;
+
 /// "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& words) {
   std::string out;
@@ -45,39 +49,75 @@ std::vector<std::string> unidentifiable(const io::JsonNode& root) {
   return out;
 }
 
+/// A table with a key for each of the four.
+/// @param value  (const JointFitResult&, std::size_t) -> of the unknown
+/// @param every  1: of each; 2: of the stiffnesses
+template <class F>
+Schema<JointFitResult> of_unknowns(const char* name, const char* meaning, F value, std::size_t every = 1) {
+  std::vector<Row<JointFitResult>> rows;
+  for (std::size_t i = 0; i < joint_unknowns; i += every) {
+    rows.push_back(key(
+        joint_fields[i].key, [value, i](const JointFitResult& result) { return value(result, i); },
+        to_string(static_cast<JointUnknown>(i))));
+    if (rows.back().key.holds == io::Holds::number) rows.back().nullable();
+  }
+  return {name, meaning, std::move(rows), io::Use::written};
+}
+
+const Schema<JointFitResult>& convergence_table() {
+  using Status = JointFitResult::Status;
+  static constexpr Name<Status> names[] = {{"converged", Status::converged}, {"not converged", Status::not_converged}};
+  static const Schema<JointFitResult> table("convergence", "of the search",
+                                            {key("status", &JointFitResult::status, names, "how it ended"),
+                                             key("iterations", &JointFitResult::iterations, "generations and steps"),
+                                             key("best", &JointFitResult::best, "the misfit after each").nullable()},
+                                            io::Use::written);
+  return table;
+}
+
 }  // namespace
 
+const Schema<JointFitResult>& joint_table() {
+  using Result = JointFitResult;
+  static const Schema<Result> values =
+      of_unknowns("joint_values", "the four values, in the keys of assembly.toml",
+                  [](const Result& r, std::size_t i) { return r.joint.*joint_fields[i].value; });
+  static const Schema<Result> deviations =
+      of_unknowns("joint_std", "standard deviations; none: the FRF sets no upper bound",
+                  [](const Result& r, std::size_t i) { return r.knowledge[i].deviation; });
+  static const Schema<Result> identifiable =
+      of_unknowns("joint_identifiable", "whether the FRF bounds each from both sides",
+                  [](const Result& r, std::size_t i) { return r.knowledge[i].identifiable; });
+  static const Schema<Result> visible = of_unknowns(
+      "joint_visible", "stiffness beyond which the FRF cannot distinguish the joint from a rigid one",
+      [](const Result& r, std::size_t i) { return r.knowledge[i].visible_up_to; }, 2);
+  const auto whole = [](const Result& result) { return &result; };
+  static const Schema<Result> table(
+      "joint", "the joint between tool and holder, found from an FRF at the tip",
+      {key("joint", whole, values, "in SI"),
+       key("objective", &Result::objective_m_per_n, "norm of |H| less |H model| over the lines, in m/N").nullable(),
+       key("relative_error", &Result::relative_error, "norm of H - H model over that of H").nullable(),
+       key("std", whole, deviations, "standard deviations"), key("identifiable", whole, identifiable, "by the FRF"),
+       key("visible_up_to", whole, visible, "of the stiffnesses"),
+       key("convergence", whole, convergence_table(), "of the search"),
+       key("suspect_hz", &Result::suspect_hz, "lines where holder or tip would create energy"),
+       key(
+           "notes",
+           [](const Result& result) {
+             std::vector<std::string> notes;
+             for (const JointKnowledge& knowledge : result.knowledge) {
+               if (!knowledge.note.empty()) notes.push_back(knowledge.note);
+             }
+             notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+             return notes;
+           },
+           "sentences for the user")},
+      io::Use::written, 1);
+  return table;
+}
+
 std::string joint_json(const JointFitResult& result) {
-  io::Json joint = io::Json::object(), deviation = io::Json::object(), identifiable = io::Json::object(),
-           visible = io::Json::object();
-  io::Json notes = io::Json::array();
-  for (std::size_t i = 0; i < joint_unknowns; ++i) {
-    const auto& [key, member, factor, value] = joint_fields[i];
-    const JointKnowledge& knowledge = result.knowledge[i];
-    joint[key] = io::number(result.joint.*value);
-    deviation[key] = io::number(knowledge.deviation);
-    identifiable[key] = knowledge.identifiable;
-    if (i % 2 == 0) visible[key] = io::number(knowledge.visible_up_to);  // a stiffness
-    if (!knowledge.note.empty()) notes.push_back(knowledge.note);
-  }
-  for (const std::string& note : result.notes) notes.push_back(note);
-  io::Json best = io::Json::array();
-  for (const double value : result.best) best.push_back(io::number(value));
-  io::Json suspect = io::Json::array();
-  for (const double line_hz : result.suspect_hz) suspect.push_back(io::number(line_hz));
-  const bool converged = result.status == JointFitResult::Status::converged;
-  io::Json json;
-  json["joint"] = joint;
-  json["objective"] = io::number(result.objective_m_per_n);
-  json["relative_error"] = io::number(result.relative_error);
-  json["std"] = deviation;
-  json["identifiable"] = identifiable;
-  json["visible_up_to"] = visible;
-  json["convergence"] = {
-      {"status", converged ? "converged" : "not converged"}, {"iterations", result.iterations}, {"best", best}};
-  json["suspect_hz"] = suspect;
-  json["notes"] = notes;
-  return io::dump(json);
+  return io::dump(joint_table().write(result));
 }
 
 std::string joint_csv(const JointFitResult& result) {

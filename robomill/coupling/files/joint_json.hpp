@@ -4,11 +4,13 @@
 #include <vector>
 
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/io/schema.hpp"
 
 namespace robomill::coupling {
 
 /// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF shows of it. A
 /// deviation that is infinite is null.
+[[nodiscard]] const io::Schema<JointFitResult>& joint_table();
 [[nodiscard]] std::string joint_json(const JointFitResult& result);
 
 /// A row for each of the four: value, standard deviation (empty where it is infinite), whether it is identifiable.

@@ -31,7 +31,7 @@ Row<FlatEndMill> helix_key() {
   };
   row.write = [](const FlatEndMill& mill, const Row<FlatEndMill>& self) {
     return mill.tooth_helix_rad.empty() ? io::number(mill.helix_rad / self.factor)
-                                        : io::detail::write_value(mill.tooth_helix_rad, self.factor);
+                                        : io::detail::write_value(mill.tooth_helix_rad, {self.factor, false});
   };
   return row;
 }

@@ -3,171 +3,335 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/json.hpp"
-#include "robomill/modal/files/modal_objects.hpp"
-#include "robomill/modal/files/mode_json.hpp"
+#include "robomill/modal/files/frf_schema.hpp"
+#include "robomill/modal/files/mode_schema.hpp"
+#include "robomill/modal/files/modes_schema.hpp"
 #include "robomill/page/thin.hpp"
 #include "robomill/path/files/smooth_object.hpp"
 #include "robomill/process/files/blocks_json.hpp"
 #include "robomill/process/files/decision_json.hpp"
-#include "robomill/process/files/forces_json.hpp"
-#include "robomill/stability/files/lobes_object.hpp"
+#include "robomill/process/files/forces_schema.hpp"
+#include "robomill/stability/files/lobes_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
 
+using decision::ComparedCut;
+using decision::Operation;
+using io::add_rows;
+using io::if_positive;
 using io::Json;
+using io::key;
 using io::number;
+using io::Row;
+using io::Schema;
+using io::Use;
+using process::Fact;
 
 Json text_or_null(std::string_view text) {
   return text.empty() ? Json() : Json(text);
 }
 
-Json cuts_json(const PlanResult& result) {
-  Json rows = Json::array();
-  for (const decision::ComparedCut& cut : result.cuts) {
-    rows.push_back({{"spindle_speed_rpm", number(cut.cut.spindle_speed_rad_per_s / units::rpm)},
-                    {"axial_depth_mm", number(cut.cut.axial_depth_m / units::mm)},
-                    {"result", text_or_null(to_string(cut.cut.result))},
-                    {"predicted", text_or_null(to_string(cut.predicted))},
-                    {"limit_depth_mm", number(cut.limit_depth_m / units::mm)},
-                    {"agrees", cut.agrees ? Json(*cut.agrees) : Json()},
-                    {"note", cut.note}});
-  }
-  return rows;
+const Schema<ComparedCut>& cut_table() {
+  static const Schema<ComparedCut> table(
+      "compared_cut", "a test cut beside its prediction",
+      {key(
+           "spindle_speed_rpm", [](const ComparedCut& cut) { return cut.cut.spindle_speed_rad_per_s; }, "of the cut"),
+       key(
+           "axial_depth_mm", [](const ComparedCut& cut) { return cut.cut.axial_depth_m; }, "of the cut"),
+       key(
+           "result", [](const ComparedCut& cut) { return cut.cut.result; }, decision::verdict_names,
+           "of the cut; none: not known")
+           .nullable(),
+       key("predicted", &ComparedCut::predicted, decision::verdict_names, "none: not known").nullable(),
+       key("limit_depth_mm", &ComparedCut::limit_depth_m, "predicted at its speed").nullable(),
+       key("agrees", &ComparedCut::agrees, "none: nothing to compare").nullable(),
+       key("note", &ComparedCut::note, "in words")},
+      Use::written);
+  return table;
 }
 
-Json feed_directions_json(const decision::FeedDirections& directions) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < directions.direction_rad.size(); ++i) {
-    Json row = {{"feed_direction_deg", number(directions.direction_rad(i) / units::deg)},
-                {"lowest_limit_mm", number(directions.lowest_limit_m(i) / units::mm)}};
-    if (directions.limit_at_speed_m.size() > 0)
-      row["limit_at_speed_mm"] = number(directions.limit_at_speed_m(i) / units::mm);
-    rows.push_back(std::move(row));
-  }
-  return rows;
+/// The limit in one direction of the feed.
+struct DirectionView {
+  const decision::FeedDirections* directions = nullptr;
+  Eigen::Index index = 0;
+};
+
+const Schema<DirectionView>& direction_table() {
+  using View = DirectionView;
+  static const Schema<View> table(
+      "feed_direction", "the limit in one direction of the feed",
+      {key(
+           "feed_direction_deg", [](const View& v) { return v.directions->direction_rad(v.index); }, "from x"),
+       key(
+           "lowest_limit_mm", [](const View& v) { return v.directions->lowest_limit_m(v.index); }, "over all speeds")
+           .nullable(),
+       where([](const View& v) { return v.directions->limit_at_speed_m.size() > 0; },
+             key(
+                 "limit_at_speed_mm", [](const View& v) { return v.directions->limit_at_speed_m(v.index); },
+                 "at the recommended speed")
+                 .nullable())},
+      Use::written);
+  return table;
 }
 
-Json facts_json(const PlanResult& result) {
+std::vector<Fact> facts_of(const PlanResult& result) {
   const cutting::Milling& cut = result.cut.problem.milling;
-  const auto fact = [](const char* label, std::string value) -> Json {
-    return {{"label", label}, {"value", std::move(value)}};
-  };
-  return Json::array(
-      {fact("Cutter", fmt::format("{} teeth, {:.4g} mm, helix {:.3g}°", cut.tool.teeth, cut.tool.diameter_m / units::mm,
-                                  cut.tool.helix_rad / units::deg)),
-       fact("Cut", fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
-                               result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
-                               cut.immersion.exit_rad / units::deg, cut.feed_per_tooth_m / units::mm)),
-       fact("Material", fmt::format("tangential {:.4g} N/mm², radial {:.4g} N/mm²",
-                                    cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
-                                    cut.coefficients.radial_n_per_m2 / units::n_per_mm2)),
-       fact("Feed direction", fmt::format("{:.4g}° from x", result.cut.problem.feed_direction_rad / units::deg))});
+  return {{"Cutter", fmt::format("{} teeth, {:.4g} mm, helix {:.3g}°", cut.tool.teeth, cut.tool.diameter_m / units::mm,
+                                 cut.tool.helix_rad / units::deg)},
+          {"Cut", fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
+                              result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
+                              cut.immersion.exit_rad / units::deg, cut.feed_per_tooth_m / units::mm)},
+          {"Material", fmt::format("tangential {:.4g} N/mm², radial {:.4g} N/mm²",
+                                   cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
+                                   cut.coefficients.radial_n_per_m2 / units::n_per_mm2)},
+          {"Feed direction", fmt::format("{:.4g}° from x", result.cut.problem.feed_direction_rad / units::deg)}};
 }
 
-/// NaN is null.
-Json depths_json(const Eigen::VectorXd& depths_m) {
-  Json list = Json::array();
-  for (const double depth_m : depths_m) list.push_back(number(depth_m / units::mm));
-  return list;
+const Schema<decision::DepthCurve>& curve_table() {
+  using decision::DepthCurve;
+  static const Schema<DepthCurve> table(
+      "depth_curve", "depths that something else than chatter limits",
+      {key("label", &DepthCurve::label, "what limits"),
+       key("spindle_speed_rpm", &DepthCurve::spindle_speed_rad_per_s, "spindle speeds").exact(),
+       key("axial_depth_mm", &DepthCurve::axial_depth_m, "at each").exact()},
+      Use::written);
+  return table;
 }
 
-Json other_limits_json(const PlanResult& result) {
-  Json list = Json::array();
-  if (!result.recommends()) return list;
-  for (const decision::DepthCurve& curve :
-       decision::other_limits(result.cut.problem.milling, result.job.recommend, result.cut.options)) {
-    list.push_back({{"label", curve.label},
-                    {"spindle_speed_rpm", io::numbers(curve.spindle_speed_rad_per_s / units::rpm)},
-                    {"axial_depth_mm", io::numbers(curve.axial_depth_m / units::mm)}});
-  }
-  return list;
+const Schema<decision::PartLimits>& pair_table() {
+  using decision::PartLimits;
+  static const Schema<PartLimits> table(
+      "part_limits", "limits of a part of the modes",
+      {key("label", &PartLimits::label, "which"), key("modes", &PartLimits::modes, "their numbers"),
+       key("spindle_speed_rpm", &PartLimits::spindle_speed_rad_per_s, "spindle speeds").exact(),
+       key("limit_depth_mm", &PartLimits::limit_depth_m, "at each").nullable()},
+      Use::written);
+  return table;
 }
 
-Json pairs_json(const PlanResult& result) {
-  Json list = Json::array();
-  for (const decision::PartLimits& part : result.pairs) {
-    list.push_back({{"label", part.label},
-                    {"modes", part.modes},
-                    {"spindle_speed_rpm", io::numbers(part.spindle_speed_rad_per_s / units::rpm)},
-                    {"limit_depth_mm", depths_json(part.limit_depth_m)}});
-  }
-  return list;
+const Schema<decision::Agreement>& agreement_table() {
+  using decision::Agreement;
+  static const Schema<Agreement> table(
+      "agreement", "how many test cuts came out as predicted",
+      {key("agree", &Agreement::agree, "as predicted"), key("disagree", &Agreement::disagree, "not as predicted"),
+       key("not_compared", &Agreement::not_compared, "nothing to compare")},
+      Use::written);
+  return table;
 }
 
-Json vibration_json(const stability::ForcedVibration& v) {
-  if (!std::isfinite(v.amplitude_m)) return {};
-  Json json = {{"amplitude_um", number(v.amplitude_m / units::um)},
-               {"harmonic", v.harmonic},
-               {"of", v.of_tooth_passing ? "tooth passing" : "rotation"},
-               {"frequency_hz", number(v.frequency_hz)},
-               {"harmonic_um", number(v.harmonic_m / units::um)}};
-  modal::set_mode(json, v.mode);
-  return json;
+const Schema<decision::LimitShare>& share_table() {
+  using decision::LimitShare;
+  static const Schema<LimitShare> table("limit_share",
+                                        "each mode's share of the speeds at which some mode limits the depth",
+                                        {key("tool", &LimitShare::tool, "one a mode").exact(),
+                                         key("workpiece", &LimitShare::workpiece, "one a mode").exact()},
+                                        Use::written);
+  return table;
+}
+
+const Schema<decision::FinishLimits>& finishing_table() {
+  using decision::FinishLimits;
+  static const Schema<FinishLimits> table(
+      "finishing", "what a finishing pass must keep",
+      {key(
+           "max_surface_error_um", [](const FinishLimits& f) { return if_positive(f.max_surface_error_m); },
+           "none: not asked for")
+           .nullable(),
+       key(
+           "max_deflection_um", [](const FinishLimits& f) { return if_positive(f.max_deflection_m); },
+           "none: not asked for")
+           .nullable()},
+      Use::written);
+  return table;
+}
+
+const Schema<stability::ForcedVibration>& vibration_table() {
+  using stability::ForcedVibration;
+  static const Schema<ForcedVibration> table(
+      "forced_vibration", "the steady vibration of the tip",
+      [] {
+        std::vector<Row<ForcedVibration>> rows = {
+            key("amplitude_um", &ForcedVibration::amplitude_m, "half the peak to peak, where that is greatest"),
+            key("harmonic", &ForcedVibration::harmonic, "in which the tip moves most"),
+            key(
+                "of", [](const ForcedVibration& v) { return v.of_tooth_passing ? "tooth passing" : "rotation"; },
+                "what it is a multiple of")
+                .words({"tooth passing", "rotation"}),
+            key("frequency_hz", &ForcedVibration::frequency_hz, "of that harmonic"),
+            key("harmonic_um", &ForcedVibration::harmonic_m, "of that harmonic alone").nullable()};
+        add_rows(rows, modal::mode_keys<ForcedVibration>("that moves most in it"));
+        return rows;
+      }(),
+      Use::written);
+  return table;
+}
+
+/// The plan with or without the documents of its stages.
+struct PlanView {
+  const PlanResult* result = nullptr;
+  bool stages = true;
+};
+std::optional<process::DecisionView> decision_of(const PlanResult& result) {
+  if (!result.decision) return std::nullopt;
+  process::DecisionView out{.decision = &*result.decision,
+                            .forces = &*result.shown().forces,
+                            .options = &result.job.decide,
+                            .output = {.collisions_checked = collisions_checked(result)}};
+  if (result.decided && result.decided->text) out.output.changed_lines = result.decided->text->changed_lines;
+  return out;
+}
+
+std::vector<Row<PlanResult>> decision_keys() {
+  using Plan = PlanResult;
+  return {
+      where([](const Plan& plan) { return plan.recommends(); },
+            key(
+                "facts", [](const Plan& plan) { return facts_of(plan); }, process::fact_table(), "in words")),
+      key(
+          "agreement", [](const Plan& plan) { return decision::agreement(plan.cuts); }, agreement_table(),
+          "of the test cuts"),
+      key(
+          "recommended", [](const Plan& plan) { return plan.recommendation.recommended; }, operation_table(),
+          "none: see reason")
+          .nullable(),
+      key(
+          "alternatives", [](const Plan& plan) { return plan.recommendation.alternatives; }, operation_table(),
+          "by falling removal rate"),
+      where([](const Plan& plan) { return !plan.recommendation.recommended; },
+            key(
+                "reason", [](const Plan& plan) { return plan.recommendation.reason; }, "why there is none")),
+      key(
+          "finishing", [](const Plan& plan) { return plan.job.finish; }, finishing_table(), "of the job"),
+      key(
+          "other_limits",
+          [](const Plan& plan) {
+            return plan.recommends()
+                       ? decision::other_limits(plan.cut.problem.milling, plan.job.recommend, plan.cut.options)
+                       : std::vector<decision::DepthCurve>();
+          },
+          curve_table(), "beside chatter"),
+      key("pairs", &Plan::pairs, pair_table(), "of neighbouring modes"),
+      key(
+          "limit_share",
+          [](const Plan& plan) {
+            return decision::limit_share(plan.lobes.limit, plan.model, plan.cut.problem.workpiece_dynamics);
+          },
+          share_table(), "of the modes"),
+      key("cuts", &Plan::cuts, cut_table(), "test cuts"),
+      where([](const Plan& plan) { return plan.feed_directions.has_value(); },
+            key(
+                "feed_direction_deg", [](const Plan& plan) { return plan.cut.problem.feed_direction_rad; },
+                "of the cut, from x")),
+      where([](const Plan& plan) { return plan.feed_directions.has_value(); },
+            key(
+                "feed_directions",
+                [](const Plan& plan) {
+                  std::vector<DirectionView> out;
+                  for (Eigen::Index i = 0; i < plan.feed_directions->direction_rad.size(); ++i)
+                    out.push_back({&*plan.feed_directions, i});
+                  return out;
+                },
+                direction_table(), "the limit in each")),
+      where([](const Plan& plan) { return plan.hits.has_value(); },
+            key("hit_directions", &Plan::hit_directions, "of each hit")),
+      key(
+          "decision", [](const Plan& plan) { return decision_of(plan); }, process::decision_table(), "of the program")
+          .optional(),
+      key("warnings", &Plan::warnings, "sentences for the user"),
+      key("notes", &Plan::notes, "sentences for the user")};
+}
+
+/// The documents of the stages.
+std::vector<Row<PlanResult>> stage_keys() {
+  using Plan = PlanResult;
+  return {key("assumed", &Plan::assumed, io::assumption_table(), "what the input did not give"),
+          key(
+              "assembly", [](const Plan& plan) { return plan.prediction ? &*plan.prediction : nullptr; },
+              assembly_table(), "of a job that starts from it")
+              .optional(),
+          key(
+              "frf", [](const Plan& plan) { return plan.hits ? &*plan.hits : nullptr; }, modal::hits_table(),
+              "of a job that starts from hits")
+              .optional(),
+          where([](const Plan& plan) { return plan.job.has_structure(); },
+                key(
+                    "modes",
+                    [](const Plan& plan) {
+                      return modal::ModesView{.model = plan.fit ? &plan.fit->model : &plan.model,
+                                              .fit = plan.fit ? &*plan.fit : nullptr};
+                    },
+                    modal::modes_table(), "of the tool")),
+          where([](const Plan& plan) { return plan.has_lobes(); },
+                key(
+                    "lobes", [](const Plan& plan) { return stability::LobesView(plan.lobes, plan.uncertain, {}); },
+                    stability::lobes_table(), "of all modes")),
+          where([](const Plan& plan) { return plan.shown().forces.has_value(); },
+                key(
+                    "forces", [](const Plan& plan) { return &*plan.shown().forces; }, process::forces_table(),
+                    "along the program")),
+          where([](const Plan& plan) { return plan.shown().blocks.has_value(); },
+                key(
+                    "blocks",
+                    [](const Plan& plan) {
+                      return process::BlocksView{&*plan.shown().forces, &*plan.shown().blocks};
+                    },
+                    process::blocks_summary_table(), "of the program")),
+          where([](const Plan& plan) { return plan.shown().path.has_value(); },
+                key(
+                    "path", [](const Plan& plan) { return &plan.shown().path->smoothed; }, path::smooth_table(),
+                    "of the program"))};
 }
 
 }  // namespace
 
-Json operation_json(const decision::Operation& op) {
-  Json json = {
-      {"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
-      {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
-      {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
-      {"margin", number(op.margin)},
-      {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
-      {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
-      {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
-      {"limited_by", decision::limited_by_text(op)},
-      {"window_limit_mm", number(op.limit_depth_m / units::mm)},
-      {"window_chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
-      {"torque_n_m", number(op.torque_n_m)},
-      {"power_w", number(op.power_w)},
-      {"surface_error_um", number(op.surface_error_m / units::um)},
-      {"peak_deflection_um", number(op.peak_deflection_m / units::um)},
-      {"forced_vibration", vibration_json(op.vibration)}};
-  modal::set_mode(json, op.mode);
-  return json;
-}
-
-Json decision_json(const PlanResult& result) {
-  const auto limit = [](double value_m) { return value_m > 0.0 ? number(value_m / units::um) : Json(); };
-  Json json;
-  const decision::Agreement count = decision::agreement(result.cuts);
-  if (result.recommends()) json["facts"] = facts_json(result);
-  json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
-  json["recommended"] = result.recommendation.recommended ? operation_json(*result.recommendation.recommended) : Json();
-  json["alternatives"] = Json::array();
-  for (const decision::Operation& op : result.recommendation.alternatives)
-    json["alternatives"].push_back(operation_json(op));
-  if (!result.recommendation.recommended) json["reason"] = result.recommendation.reason;
-  json["finishing"] = {{"max_surface_error_um", limit(result.job.finish.max_surface_error_m)},
-                       {"max_deflection_um", limit(result.job.finish.max_deflection_m)}};
-  json["other_limits"] = other_limits_json(result);
-  json["pairs"] = pairs_json(result);
-  const decision::LimitShare share =
-      decision::limit_share(result.lobes.limit, result.model, result.cut.problem.workpiece_dynamics);
-  json["limit_share"] = {{"tool", io::numbers(share.tool)}, {"workpiece", io::numbers(share.workpiece)}};
-  json["cuts"] = cuts_json(result);
-  if (result.feed_directions) {
-    json["feed_direction_deg"] = number(result.cut.problem.feed_direction_rad / units::deg);
-    json["feed_directions"] = feed_directions_json(*result.feed_directions);
-  }
-  if (result.hits) json["hit_directions"] = result.hit_directions;
-  if (result.decision) {
-    process::DecisionOutput output{.collisions_checked = collisions_checked(result)};
-    if (result.decided && result.decided->text) output.changed_lines = result.decided->text->changed_lines;
-    json["decision"] = process::decision_object(*result.decision, *result.shown().forces, result.job.decide, output);
-  }
-  json["warnings"] = result.warnings;
-  json["notes"] = result.notes;
-  return json;
+const Schema<Operation>& operation_table() {
+  static const Schema<Operation> table(
+      "operation", "a speed and a depth to cut at",
+      [] {
+        std::vector<Row<Operation>> rows = {
+            key("spindle_speed_rpm", &Operation::spindle_speed_rad_per_s, "spindle speed"),
+            key("axial_depth_mm", &Operation::axial_depth_m, "axial depth"),
+            key("feed_per_tooth_mm", &Operation::feed_per_tooth_m, "feed per tooth"),
+            key("margin", &Operation::margin, "1 - depth / limit"),
+            key(
+                "cutting_speed_m_per_min", [](const Operation& op) { return op.cutting_speed_m_per_s * units::minute; },
+                "of the tooth")
+                .in_unit(),
+            key(
+                "feed_mm_per_min", [](const Operation& op) { return op.feed_m_per_s / units::mm * units::minute; },
+                "of the program")
+                .in_unit(),
+            key("removal_rate_mm3_per_s", &Operation::removal_rate_m3_per_s, "material a second"),
+            key(
+                "limited_by", [](const Operation& op) { return decision::limited_by_text(op); }, "in words"),
+            key("window_limit_mm", &Operation::limit_depth_m, "lowest limit over the speed window").nullable(),
+            key(
+                "window_chatter_frequency_hz", [](const Operation& op) { return if_positive(op.chatter_frequency_hz); },
+                "at that limit; none: nothing chatters")
+                .nullable(),
+            key("torque_n_m", &Operation::torque_n_m, "mean"),
+            key("power_w", &Operation::power_w, "mean"),
+            key("surface_error_um", &Operation::surface_error_m, "of the forced vibration; none: not computed")
+                .nullable(),
+            key("peak_deflection_um", &Operation::peak_deflection_m, "of the forced vibration").nullable(),
+            key(
+                "forced_vibration",
+                [](const Operation& op) { return std::isfinite(op.vibration.amplitude_m) ? &op.vibration : nullptr; },
+                vibration_table(), "none: not computed")
+                .nullable()};
+        add_rows(rows, modal::mode_keys<Operation>("that chatters at the window's limit"));
+        return rows;
+      }(),
+      Use::written);
+  return table;
 }
 
 Json recordings_json(const PlanResult& result) {
@@ -199,19 +363,34 @@ Json recordings_json(const PlanResult& result) {
   return list;
 }
 
+namespace {
+
+const Schema<PlanView>& plan_view_table() {
+  static const Schema<PlanView> table(
+      "plan", "a job: what is recommended, and the documents of its stages",
+      [] {
+        const auto result = [](const PlanView& view) -> const PlanResult& { return *view.result; };
+        std::vector<Row<PlanView>> rows = io::keys_of<PlanView>(decision_keys(), result);
+        for (Row<PlanView>& row : io::keys_of<PlanView>(stage_keys(), result))
+          rows.push_back(where([](const PlanView& view) { return view.stages; }, std::move(row)));
+        return rows;
+      }(),
+      Use::written, 1);
+  return table;
+}
+
+}  // namespace
+
+const io::TableInfo& plan_table() {
+  return plan_view_table().info();
+}
+
+Json decision_json(const PlanResult& result) {
+  return plan_view_table().write({.result = &result, .stages = false});
+}
+
 Json plan_object(const PlanResult& result) {
-  Json json = decision_json(result);
-  json["assumed"] = io::assumed_json(result.assumed);
-  if (result.prediction) json["assembly"] = prediction_object(*result.prediction);
-  if (result.hits) json["frf"] = modal::hits_object(*result.hits);
-  if (result.job.has_structure())
-    json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
-  if (result.has_lobes()) json["lobes"] = stability::lobes_object(result.lobes, result.uncertain);
-  const PlannedProgram& shown = result.shown();
-  if (shown.forces) json["forces"] = process::forces_object(*shown.forces);
-  if (shown.blocks) json["blocks"] = process::blocks_summary(*shown.forces, *shown.blocks);
-  if (shown.path) json["path"] = path::smooth_object(shown.path->smoothed);
-  return json;
+  return plan_view_table().write({.result = &result});
 }
 
 std::string plan_text(const Json& plan) {

@@ -2,21 +2,22 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/page/report.hpp"
 
 namespace robomill::jobs {
 
-[[nodiscard]] io::Json operation_json(const decision::Operation& op);
+[[nodiscard]] const io::Schema<decision::Operation>& operation_table();
 /// What the job itself came to: plan.json without the documents of its stages.
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
 /// Spectra of the recorded test cuts.
 [[nodiscard]] io::Json recordings_json(const PlanResult& result);
 /// The member `assembly`.
-[[nodiscard]] io::Json prediction_object(const TipPrediction& prediction);
+[[nodiscard]] const io::Schema<TipPrediction>& assembly_table();
 
 /// plan.json: the decision, and each stage's document as a member.
+[[nodiscard]] const io::TableInfo& plan_table();
 [[nodiscard]] io::Json plan_object(const PlanResult& result);
 /// It as text.
 [[nodiscard]] std::string plan_text(const io::Json& plan);

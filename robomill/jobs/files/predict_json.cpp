@@ -1,8 +1,9 @@
-#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "robomill/base/units.hpp"
 #include "robomill/coupling/files/assembly_json.hpp"
-#include "robomill/io/json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -10,13 +11,51 @@
 namespace robomill::jobs {
 namespace {
 
-using io::Json;
-using io::number;
+using io::key;
+using io::Schema;
+using io::Use;
 
-Json lines_json(const std::vector<double>& lines_hz) {
-  Json list = Json::array();
-  for (const double line : lines_hz) list.push_back(number(line));
-  return list;
+const Schema<coupling::TipPeak>& tip_peak_table() {
+  using coupling::TipPeak;
+  static const Schema<TipPeak> table(
+      "tip_peak", "a peak of a predicted FRF",
+      {key(
+           "frf", [](const TipPeak& peak) { return modal::to_string(peak.name); }, "which"),
+       key("frequency_hz", &TipPeak::frequency_hz, "where"),
+       key("receptance_m_per_n", &TipPeak::receptance_m_per_n, "magnitude"),
+       key("measured_frequency_hz", &TipPeak::measured_frequency_hz, "of the measured peak nearest to it").nullable()},
+      Use::written);
+  return table;
+}
+
+const Schema<coupling::AssemblyFile>& holder_table() {
+  using coupling::AssemblyFile;
+  const auto drawn = [](const AssemblyFile& file) { return file.assembly.holder.receptances.frfs.empty(); };
+  static const Schema<AssemblyFile> table(
+      "assembly_holder", "the holder: its segments, or its measured receptances",
+      {where(drawn, key(
+                        "segments", [](const AssemblyFile& file) { return file.assembly.holder.segments; },
+                        coupling::segment_table(), "from the joint on")),
+       where([drawn](const AssemblyFile& file) { return !drawn(file); },
+             key(
+                 "receptances", [](const AssemblyFile& file) { return file.receptances.filename().string(); },
+                 "name of their file"))},
+      Use::written);
+  return table;
+}
+
+/// By the FRF's name.
+io::Row<TipPrediction> error_key() {
+  auto row = key(
+      "relative_error",
+      [](const TipPrediction& tip) {
+        std::vector<std::pair<std::string, double>> out;
+        for (const modal::FrfFitError& one : tip.error) out.emplace_back(modal::to_string(one.name), one.relative);
+        return tip.measured ? std::optional(out) : std::nullopt;
+      },
+      "of each measured FRF; none: nothing was measured");
+  row.key.named = true;
+  return row.nullable().null_list();
 }
 
 }  // namespace
@@ -36,35 +75,31 @@ std::string tip_json(const TipPrediction& prediction) {
   return modal::frf_json(prediction.tip.frfs, doubts);
 }
 
-Json prediction_object(const TipPrediction& prediction) {
-  const coupling::Assembly& assembly = prediction.file.assembly;
-  Json holder = Json::object();
-  if (assembly.holder.receptances.frfs.empty()) {
-    holder["segments"] = coupling::segments_json(assembly.holder.segments);
-  } else {
-    holder["receptances"] = prediction.file.receptances.filename().string();
-  }
-  Json peaks = Json::array();
-  for (const coupling::TipPeak& peak : prediction.peaks) {
-    peaks.push_back({{"frf", modal::to_string(peak.name)},
-                     {"frequency_hz", number(peak.frequency_hz)},
-                     {"receptance_m_per_n", number(peak.receptance_m_per_n)},
-                     {"measured_frequency_hz", number(peak.measured_frequency_hz)}});
-  }
-  Json error = Json::object();
-  for (const modal::FrfFitError& one : prediction.error) error[modal::to_string(one.name)] = number(one.relative);
-  Json json;
-  json["file"] = prediction.file.path.filename().string();
-  json["tool"] = coupling::segments_json(assembly.tool);
-  json["joint"] = assembly.joint ? coupling::joint_json(*assembly.joint) : Json();
-  json["holder"] = std::move(holder);
-  json["peaks"] = std::move(peaks);
-  json["relative_error"] = prediction.measured ? std::move(error) : Json();
-  json["suspect_hz"] = lines_json(prediction.tip.suspect_hz);
-  json["unreliable_hz"] =
-      lines_json(prediction.file.holder ? prediction.file.holder->unreliable_hz : std::vector<double>{});
-  json["notes"] = prediction.notes;
-  return json;
+const Schema<TipPrediction>& assembly_table() {
+  using Tip = TipPrediction;
+  static const Schema<Tip> table(
+      "assembly", "a tool in its holder, as its tip was predicted",
+      {key(
+           "file", [](const Tip& tip) { return tip.file.path.filename().string(); }, "name of assembly.toml"),
+       key(
+           "tool", [](const Tip& tip) { return tip.file.assembly.tool; }, coupling::segment_table(), "from the tip on"),
+       key(
+           "joint", [](const Tip& tip) { return tip.file.assembly.joint; }, coupling::assembly_joint_table(),
+           "none: rigid")
+           .nullable(),
+       key(
+           "holder", [](const Tip& tip) { return &tip.file; }, holder_table(), "behind the joint"),
+       key("peaks", &Tip::peaks, tip_peak_table(), "the first of each FRF"), error_key(),
+       key(
+           "suspect_hz", [](const Tip& tip) { return tip.tip.suspect_hz; },
+           "lines where the measured holder would create energy"),
+       key(
+           "unreliable_hz",
+           [](const Tip& tip) { return tip.file.holder ? tip.file.holder->unreliable_hz : std::vector<double>(); },
+           "lines where an error of the holder's measurement becomes a large one"),
+       key("notes", &Tip::notes, "sentences for the user")},
+      Use::written, 1);
+  return table;
 }
 
 }  // namespace robomill::jobs

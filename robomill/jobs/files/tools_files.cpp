@@ -45,7 +45,7 @@ std::string cell(double value, double unit, bool known = true) {
 Json recommended_json(const decision::Operation* op) {
   Json json;
   if (op == nullptr) return json;
-  const Json all = operation_json(*op);
+  const Json all = operation_table().write(*op);
   for (const char* key :
        {"spindle_speed_rpm", "axial_depth_mm", "window_limit_mm", "removal_rate_mm3_per_s", "limited_by"}) {
     json[key] = all[key];

@@ -3,47 +3,14 @@
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
-#include "robomill/modal/files/modal_objects.hpp"
+#include "robomill/modal/files/frf_schema.hpp"
 
 namespace robomill::modal {
 namespace {
 
-io::Json set_json(const FrfSet& set) {
-  set.validate();
-  io::Json json;
-  json["frequency_hz"] = io::numbers(set.frequency_hz);
-  json["receptance_m_per_n"] = io::Json::object();
-  json["coherence"] = io::Json::object();
-  json["deviation_m_per_n"] = io::Json::object();
-  for (const Frf& frf : set.frfs) {
-    const std::string name = to_string(frf.name);
-    json["receptance_m_per_n"][name] = io::complex_numbers(frf.receptance);
-    if (frf.coherence.size() > 0) json["coherence"][name] = io::numbers(frf.coherence);
-    if (frf.deviation.size() > 0) json["deviation_m_per_n"][name] = io::numbers(frf.deviation);
-  }
-  return json;
-}
-
-io::Json peaks_json(const std::vector<FrfPeak>& peaks) {
-  io::Json rows = io::Json::array();
-  for (const FrfPeak& peak : peaks) {
-    rows.push_back(
-        {{"frequency_hz", io::number(peak.frequency_hz)}, {"receptance_m_per_n", io::number(peak.receptance_m_per_n)}});
-  }
-  return rows;
-}
-
-io::Json grade_json(const FrfGrade& grade) {
-  return {{"grade", to_string(grade.grade)},
-          {"hits", grade.hits},
-          {"mean_coherence", io::number(grade.mean_coherence)},
-          {"relative_noise", io::number(grade.relative_noise)},
-          {"reciprocity_error", io::number(grade.reciprocity_error)},
-          {"excited_band_hz", io::Json::array({io::number(grade.excited_low_hz), io::number(grade.excited_high_hz)})},
-          {"lowest_trustworthy_frequency_hz", io::number(grade.lowest_trustworthy_frequency_hz)},
-          {"peaks", peaks_json(grade.peaks)},
-          {"faults", grade.faults},
-          {"remedies", grade.remedies}};
+std::string text_of(const FrfView& view) {
+  view.set->validate();
+  return io::dump(frf_table().write(view));
 }
 
 /// root[key][name], where there is one.
@@ -81,42 +48,16 @@ FrfParts read_frf_json(const std::filesystem::path& path) {
   return out;
 }
 
-io::Json hits_object(const FrfResult& result) {
-  io::Json json;
-  json["hits"] = io::Json::array();
-  for (const HitVerdict& hit : result.hits) {
-    json["hits"].push_back({{"file", hit.file},
-                            {"accepted", hit.accepted},
-                            {"reasons", hit.reasons},
-                            {"peak_force_n", io::number(hit.peak_force_n)},
-                            {"pulse_width_s", io::number(hit.pulse_width_s)},
-                            {"second_pulse_ratio", io::number(hit.second_pulse_ratio)}});
-  }
-  json["grades"] = io::Json::object();
-  for (const FrfGrade& grade : result.grades) json["grades"][to_string(grade.name)] = grade_json(grade);
-  json["lowest_trustworthy_frequency_hz"] = io::number(result.lowest_trustworthy_frequency_hz);
-  json["added_decay_per_s"] = io::number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
-  json["notes"] = result.notes;
-  return json;
-}
-
 std::string frf_json(const FrfSet& set) {
-  return io::dump(set_json(set));
+  return text_of({.set = &set});
 }
 
 std::string frf_json(const FrfResult& result) {
-  io::Json json = set_json(result.set);
-  json.update(hits_object(result));
-  return io::dump(json);
+  return text_of({.set = &result.set, .hits = &result});
 }
 
 std::string frf_json(const FrfSet& set, const FrfDoubts& doubts) {
-  io::Json json = set_json(set);
-  json["suspect_hz"] = doubts.suspect_hz;
-  json["unreliable_hz"] = doubts.unreliable_hz;
-  json["notes"] = doubts.notes;
-  json["assumed"] = io::assumed_json(doubts.assumed);
-  return io::dump(json);
+  return text_of({.set = &set, .doubts = &doubts});
 }
 
 }  // namespace robomill::modal

@@ -9,24 +9,15 @@
 #include <set>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml_file.hpp"
-#include "robomill/modal/files/modal_objects.hpp"
+#include "robomill/modal/files/modes_schema.hpp"
 #include "robomill/modal/weak_modes.hpp"
 
 namespace robomill::modal {
 namespace {
-
-io::Json vector_json(const Eigen::VectorXcd& vector, const std::vector<Dof>& dofs, bool as_excitation) {
-  io::Json out = io::Json::object();
-  for (std::size_t i = 0; i < dofs.size(); ++i) {
-    out[to_string(dofs[i], as_excitation)] = io::complex_number(vector(static_cast<Eigen::Index>(i)));
-  }
-  return out;
-}
 
 /// A mode as a file holds it: entries by the name of their degree of freedom.
 struct NamedMode {
@@ -212,71 +203,14 @@ ModalModel read_modes(const io::TomlSource& source, std::vector<std::string>& no
                      "FRFs become modes with robomill modes FILE -o modes.json");
 }
 
-io::Json modes_object(const ModalModel& model) {
-  model.validate();
-  io::Json json;
-  json["modes"] = io::Json::array();
-  for (std::size_t k = 0; k < model.modes.size(); ++k) {
-    const Mode& mode = model.modes[k];
-    const ModalStiffness spring = modal_stiffness(model, k);
-    json["modes"].push_back({{"frequency_hz", io::number(mode.frequency_hz)},
-                             {"damping_ratio", io::number(mode.damping_ratio)},
-                             {"left", vector_json(mode.left, model.excitations, true)},
-                             {"right", vector_json(mode.right, model.responses, false)},
-                             {"modal_stiffness_n_per_um", io::number(spring.stiffness_n_per_m * units::um)},
-                             {"modal_mass_kg", io::number(spring.mass_kg)},
-                             {"weak", mode.weak},
-                             {"std",
-                              {{"frequency_hz", io::number(mode.frequency_std_hz)},
-                               {"damping_ratio", io::number(mode.damping_ratio_std)},
-                               {"residue", io::number(mode.residue_std_ratio)}}}});
-  }
-  json["residuals"] = io::Json::object();
-  for (const Residual& residual : model.residuals) {
-    json["residuals"][to_string(residual.name)] = {{"mass", io::complex_number(residual.mass)},
-                                                   {"stiffness", io::complex_number(residual.stiffness)}};
-  }
-  return json;
-}
-
-io::Json modes_object(const FitResult& fit) {
-  io::Json json = modes_object(fit.model);
-  for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
-    io::Json bounds = io::Json::array();
-    for (const FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(to_string(bound));
-    json["modes"][k]["at_bounds"] = std::move(bounds);
-  }
-  io::Json by_frf = io::Json::object();
-  for (const FrfFitError& error : fit.by_frf) by_frf[to_string(error.name)] = io::number(error.relative);
-  io::Json dropped = io::Json::array();
-  for (const double frequency_hz : fit.dropped_hz) dropped.push_back(io::number(frequency_hz));
-  json["fit"] = {{"relative_error", io::number(fit.relative_error)},
-                 {"relative_error_by_frf", by_frf},
-                 {"mean_relative_error", io::number(fit.mean_relative_error)},
-                 {"converged", fit.status == FitResult::Status::converged},
-                 {"usable", fit.usable()},
-                 {"band_hz", io::Json::array({io::number(fit.band_low_hz), io::number(fit.band_high_hz)})},
-                 {"lines", fit.lines},
-                 {"dropped_modes_hz", std::move(dropped)}};
-  json["convergence"] = {{"iterations", fit.iterations}, {"best", fit.best}};
-  json["stabilisation"] = io::Json::array();
-  for (const StabilisationPoint& point : fit.stabilisation) {
-    json["stabilisation"].push_back(
-        {{"order", point.order},
-         {"frequency_hz", io::number(point.frequency_hz)},
-         {"damping_ratio", io::number(point.damping_ratio)},
-         {"stable", point.frequency_stable && point.damping_stable && point.vector_stable}});
-  }
-  json["warnings"] = fit.warnings;
-  return json;
-}
-
 std::string modes_json(const ModalModel& model) {
-  return io::dump(modes_object(model));
+  model.validate();
+  return io::dump(modes_table().write({.model = &model, .fit = nullptr}));
 }
 
 std::string modes_json(const FitResult& fit) {
-  return io::dump(modes_object(fit));
+  fit.model.validate();
+  return io::dump(modes_table().write({.model = &fit.model, .fit = &fit}));
 }
 
 std::string modes_csv(const ModalModel& model) {

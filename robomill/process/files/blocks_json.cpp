@@ -4,38 +4,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <initializer_list>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
-#include "robomill/io/json.hpp"
+#include "robomill/io/columns.hpp"
 #include "robomill/process/blocks/named_block.hpp"
 #include "robomill/process/vibration_text.hpp"
 
 namespace robomill::process {
 namespace {
 
+using io::add_rows;
+using io::columns_key;
 using io::Json;
-using io::number;
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
 
 /// One block with all that is known of it.
 struct BlockLine {
-  std::size_t index;
-  const program::Block& block;
-  const BlockResult& force;
-  const BlockRow& row;
-  double feed_m_per_s;
-};
-
-/// A column of both documents; null where there is none.
-struct BlockColumn {
-  std::string name;
-  std::function<Json(const BlockLine&)> value;
-  bool always = false;  ///< also of blocks that do not cut
+  std::size_t index = 0;
+  const program::Block* block = nullptr;
+  const BlockResult* force = nullptr;
+  const BlockRow* row = nullptr;
+  double feed_m_per_s = 0.0;
 };
 
 /// Warnings of stretches beyond these are counted.
@@ -94,122 +93,210 @@ std::string beyond_warning(const ForcesResult& forces, const BeyondMeasured& str
   return text + ".";
 }
 
-using BlockNumber = double (*)(const BlockLine&);
-
-std::vector<BlockColumn> place_columns(Eigen::Index joints) {
-  std::vector<BlockColumn> columns = {
-      {"block", [](const BlockLine& r) { return Json(r.index + 1); }, true},
-      {"line", [](const BlockLine& r) { return Json(r.block.line); }, true},
-      {"x_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.x() / units::mm); }, true},
-      {"y_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.y() / units::mm); }, true},
-      {"z_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.z() / units::mm); }, true},
+/// The same key, null of a block that does not cut.
+Row<BlockLine> while_cutting(Row<BlockLine> row) {
+  row.key.nullable = true;
+  row.write = [write = std::move(row.write)](const BlockLine& at, const Row<BlockLine>& self) {
+    return at.row->cuts ? write(at, self) : Json();
   };
-  for (Eigen::Index k = 0; k < joints; ++k) {
-    columns.push_back({fmt::format("q{}", k + 1), [k](const BlockLine& r) { return number(r.force.joints(k)); }, true});
+  return row;
+}
+
+std::vector<Row<BlockLine>> block_place_keys() {
+  std::vector<Row<BlockLine>> rows = {
+      key(
+          "block", [](const BlockLine& at) { return at.index + 1; }, "number in the program, from 1"),
+      key(
+          "line", [](const BlockLine& at) { return at.block->line; }, "of the program's file"),
+      key(
+          "x_mm", [](const BlockLine& at) { return at.block->end.tip_m.x(); }, "of the tip at its end"),
+      key(
+          "y_mm", [](const BlockLine& at) { return at.block->end.tip_m.y(); }, "the same"),
+      key(
+          "z_mm", [](const BlockLine& at) { return at.block->end.tip_m.z(); }, "the same")};
+  constexpr Eigen::Index most_joints = 6;
+  for (Eigen::Index k = 0; k < most_joints; ++k) {
+    rows.push_back(where([k](const BlockLine& at) { return at.force->joints.size() > k; },
+                         key(
+                             fmt::format("q{}", k + 1), [k](const BlockLine& at) { return at.force->joints(k); },
+                             "position of the joint at its end, in rad or m")));
   }
+  return rows;
+}
+
+std::vector<Row<BlockLine>> block_stability_keys() {
+  return {
+      key(
+          "axial_depth_mm", [](const BlockLine& at) { return at.row->axial_depth_m; },
+          "of the engaged part along the tool's axis, where most of the cutter is in the material"),
+      key(
+          "radial_depth_mm", [](const BlockLine& at) { return at.row->radial_depth_m; }, "the same across the feed"),
+      key(
+          "spindle_speed_rpm", [](const BlockLine& at) { return at.row->spindle_speed_rad_per_s; }, "spindle speed"),
+      key(
+          "feed_mm_per_min", [](const BlockLine& at) { return at.feed_m_per_s / units::mm * units::minute; },
+          "mean of the block")
+          .in_unit(),
+      key(
+          "spectral_radius", [](const BlockLine& at) { return at.row->stability.at.spectral_radius; },
+          "of one tooth period, of one revolution for unequal teeth; from 1 on the block chatters"),
+      key(
+          "limit_depth_mm", [](const BlockLine& at) { return at.row->stability.at.limit_depth_m; },
+          "lowest unstable depth from a sixteenth to eight times the depth; none: none"),
+      key(
+          "stability_margin", [](const BlockLine& at) { return at.row->stability_margin; },
+          "1 - depth / limit, with the 5 % quantile of the limit"),
+      key(
+          "chatter_frequency_hz", [](const BlockLine& at) { return at.row->stability.chatter_frequency_hz(); },
+          "at the limit; without one, of the least damped motion"),
+      key(
+          "mode",
+          [](const BlockLine& at) {
+            const modal::ModeId mode = at.row->stability.mode();
+            return mode.known() ? to_string(mode) : std::string();
+          },
+          "that moves most there"),
+      key(
+          "regime", [](const BlockLine& at) { return at.row->stability.regime; }, stability::regime_names,
+          "what makes the cut unstable at the limit")};
+}
+
+std::vector<Row<BlockLine>> block_load_keys() {
+  return {key(
+              "peak_f_n", [](const BlockLine& at) { return at.force->force.peak_force_n; }, "largest force"),
+          key(
+              "torque_n_m", [](const BlockLine& at) { return at.force->force.mean_torque_n_m; }, "mean"),
+          key(
+              "power_w", [](const BlockLine& at) { return at.force->force.power_w; }, "mean"),
+          key(
+              "deflection_um", [](const BlockLine& at) { return at.force->deflection_m.norm(); },
+              "of the tip under the mean force"),
+          key(
+              "surface_error_um", [](const BlockLine& at) { return at.row->steady.surface_error_m; },
+              "greatest error of the steady vibration on all that the pass leaves, along the normal; positive: "
+              "material is left"),
+          key(
+              "surface_left_um", [](const BlockLine& at) { return at.row->surface_left_m; },
+              "the same of the finished surface, which no later block takes away"),
+          key(
+              "gain_margin", [](const BlockLine& at) { return at.row->stability.at.gain_margin; },
+              "smallest factor on the cutting stiffness at which the radius is 1"),
+          key(
+              "limit_5_percent_mm", [](const BlockLine& at) { return at.row->stability.limit_5_percent_m; },
+              "quantile of the limit"),
+          key(
+              "limit_95_percent_mm", [](const BlockLine& at) { return at.row->stability.limit_95_percent_m; },
+              "quantile of the limit"),
+          key(
+              "condition_number", [](const BlockLine& at) { return at.force->condition_number; },
+              "of the Jacobian at its end"),
+          key(
+              "joint_torque_share", [](const BlockLine& at) { return at.row->joint_torque_share; },
+              "greatest share of a drive's torque limit, weight and cut; none: no limit, or unknown masses"),
+          key(
+              "cut_joint_torque_n_m", [](const BlockLine& at) { return at.row->cut_joint_torque_n_m; },
+              "the greatest that the cut alone puts on a joint that turns"),
+          key(
+              "vibration_um", [](const BlockLine& at) { return at.row->steady.vibration.amplitude_m; },
+              "forced vibration: half the peak to peak of the tip about its mean, where that is greatest"),
+          key(
+              "lower_bound", [](const BlockLine& at) { return at.row->stability.lower_bound; },
+              "process damping, which is not known, raises the limit"),
+          key(
+              "measured_nearby", [](const BlockLine& at) { return at.row->measured_nearby; },
+              "the robot stands within the measured region; none: no measured postures"),
+          key(
+              "evaluation", [](const BlockLine& at) { return at.row->evaluation + 1; },
+              "number of the evaluation that the block shares with those like it")};
+}
+
+const io::Columns<BlockLine>& block_columns() {
+  static const Schema<BlockLine> rows(
+      "block_columns", "a list a key, an entry a block; null of a block that does not cut",
+      [] {
+        std::vector<Row<BlockLine>> all = block_place_keys();
+        for (Row<BlockLine>& row : block_stability_keys()) all.push_back(while_cutting(std::move(row)));
+        for (Row<BlockLine>& row : block_load_keys()) all.push_back(while_cutting(std::move(row)));
+        all.push_back(key(
+                          "note", [](const BlockLine& at) { return block_note(*at.force, *at.row); },
+                          "what is to be known of its numbers")
+                          .nullable());
+        return all;
+      }(),
+      Use::written);
+  static const io::Columns<BlockLine> columns(rows);
   return columns;
 }
 
-/// Columns of numbers in a shop's units, NaN and infinity: none.
-constexpr std::pair<const char*, BlockNumber> of_stability[] = {
-    {"axial_depth_mm", [](const BlockLine& r) { return r.row.axial_depth_m / units::mm; }},
-    {"radial_depth_mm", [](const BlockLine& r) { return r.row.radial_depth_m / units::mm; }},
-    {"spindle_speed_rpm", [](const BlockLine& r) { return r.row.spindle_speed_rad_per_s / units::rpm; }},
-    {"feed_mm_per_min", [](const BlockLine& r) { return r.feed_m_per_s / units::mm * units::minute; }},
-    {"spectral_radius", [](const BlockLine& r) { return r.row.stability.at.spectral_radius; }},
-    {"limit_depth_mm", [](const BlockLine& r) { return r.row.stability.at.limit_depth_m / units::mm; }},
-    {"stability_margin", [](const BlockLine& r) { return r.row.stability_margin; }},
-    {"chatter_frequency_hz", [](const BlockLine& r) { return r.row.stability.chatter_frequency_hz(); }},
-};
-constexpr std::pair<const char*, BlockNumber> of_load[] = {
-    {"peak_f_n", [](const BlockLine& r) { return r.force.force.peak_force_n; }},
-    {"torque_n_m", [](const BlockLine& r) { return r.force.force.mean_torque_n_m; }},
-    {"power_w", [](const BlockLine& r) { return r.force.force.power_w; }},
-    {"deflection_um", [](const BlockLine& r) { return r.force.deflection_m.norm() / units::um; }},
-    {"surface_error_um", [](const BlockLine& r) { return r.row.steady.surface_error_m / units::um; }},
-    {"surface_left_um", [](const BlockLine& r) { return r.row.surface_left_m / units::um; }},
-    {"gain_margin", [](const BlockLine& r) { return r.row.stability.at.gain_margin; }},
-    {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.stability.limit_5_percent_m / units::mm; }},
-    {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.stability.limit_95_percent_m / units::mm; }},
-    {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
-    {"joint_torque_share", [](const BlockLine& r) { return r.row.joint_torque_share; }},
-    {"cut_joint_torque_n_m", [](const BlockLine& r) { return r.row.cut_joint_torque_n_m; }},
-    {"vibration_um", [](const BlockLine& r) { return r.row.steady.vibration.amplitude_m / units::um; }},
-};
-
-std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
-  std::vector<BlockColumn> columns = place_columns(forces.program->blocks.front().joints.size());
-  const auto add = [&columns](const auto& list) {
-    for (const auto& [name, get] : list) {
-      columns.push_back({name, [value = get](const BlockLine& r) { return number(value(r)); }});
-    }
-  };
-  add(of_stability);
-  columns.push_back({"mode", [](const BlockLine& r) {
-                       const modal::ModeId mode = r.row.stability.mode();
-                       return mode.known() ? Json(to_string(mode)) : Json();
-                     }});
-  columns.push_back({"regime", [](const BlockLine& r) { return Json(to_string(r.row.stability.regime)); }});
-  add(of_load);
-  columns.push_back({"lower_bound", [](const BlockLine& r) { return Json(r.row.stability.lower_bound); }});
-  columns.push_back({"measured_nearby",
-                     [](const BlockLine& r) { return r.row.measured_nearby ? Json(*r.row.measured_nearby) : Json(); }});
-  columns.push_back({"evaluation", [](const BlockLine& r) { return Json(r.row.evaluation + 1); }});
-  columns.push_back({"note",
-                     [](const BlockLine& r) {
-                       return block_note(r.force, r.row).empty() ? Json() : Json(block_note(r.force, r.row));
-                     },
-                     true});
-  return columns;
-}
-
-/// Calls f with each block.
-template <class F>
-void each_block(const ForcesResult& forces, const ProgramBlocks& blocks, F&& f) {
-  const program::Program& program = forces.program->program;
-  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
+std::vector<BlockLine> block_lines(const BlocksView& view) {
+  const program::Program& program = view.forces->program->program;
+  std::vector<BlockLine> out;
+  out.reserve(view.blocks->rows.size());
+  for (std::size_t i = 0; i < view.blocks->rows.size(); ++i) {
     const program::Block& block = program.blocks[i];
     const double way_m = (block.end.tip_m - program.begin_of(i).tip_m).norm();
-    f(BlockLine{.index = i,
-                .block = block,
-                .force = forces.program->blocks[i],
-                .row = blocks.rows[i],
-                .feed_m_per_s = block.duration_s > 0.0 ? way_m / block.duration_s : 0.0});
+    out.push_back({.index = i,
+                   .block = &block,
+                   .force = &view.forces->program->blocks[i],
+                   .row = &view.blocks->rows[i],
+                   .feed_m_per_s = block.duration_s > 0.0 ? way_m / block.duration_s : 0.0});
   }
+  return out;
 }
 
-Json block_cell(const BlockColumn& column, const BlockLine& row) {
-  return column.always || row.row.cuts ? column.value(row) : Json();
+/// A scan around the worst block.
+struct ScanView {
+  const LimitScan* scan = nullptr;
+  std::size_t block = 0, line = 0;
+  [[nodiscard]] double unit() const { return scan->parameter.ends_with("_deg") ? units::deg : units::mm; }
+};
+
+const Schema<ScanView>& scan_table() {
+  static const Schema<ScanView> table(
+      "limit_scan", "the limit over one coordinate of the tool's pose, around the worst block",
+      {key(
+           "parameter", [](const ScanView& at) { return at.scan->parameter; }, "which coordinate")
+           .words({"x_mm", "y_mm", "z_mm", "gamma_deg"}),
+       key(
+           "value",
+           [](const ScanView& at) {
+             std::vector<double> out = at.scan->value;
+             for (double& value : out) value /= at.unit();
+             return out;
+           },
+           "of it, in the unit of its name"),
+       key(
+           "limit_depth_mm", [](const ScanView& at) { return at.scan->limit_m; },
+           "none: no limit, or the robot cannot stand there")
+           .nullable(),
+       key(
+           "at_block", [](const ScanView& at) { return at.block + 1; }, "the worst block"),
+       key(
+           "at_line", [](const ScanView& at) { return at.line; }, "its line")},
+      Use::written);
+  return table;
 }
 
-void append_block_cell(std::string& text, const Json& cell) {
-  if (cell.is_null()) return;
-  if (cell.is_string()) {
-    io::append(text, "\"{}\"", cell.get_ref<const std::string&>());
-  } else if (cell.is_boolean()) {
-    text += cell.get<bool>() ? "true" : "false";
-  } else if (cell.is_number_float()) {
-    io::append(text, "{:.9g}", cell.get<double>());
-  } else {
-    io::append(text, "{}", cell.get<std::size_t>());
-  }
-}
-
-Json scans_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  Json list = Json::array();
-  for (const LimitScan& scan : blocks.scans) {
-    const double unit = scan.parameter.ends_with("_deg") ? units::deg : units::mm;
-    Json value = Json::array();
-    Json limit = Json::array();
-    for (const double v : scan.value) value.push_back(number(v / unit));
-    for (const double depth_m : scan.limit_m) limit.push_back(number(depth_m / units::mm));
-    list.push_back({{"parameter", scan.parameter},
-                    {"value", std::move(value)},
-                    {"limit_depth_mm", std::move(limit)},
-                    {"at_block", blocks.worst + 1},
-                    {"at_line", forces.program->program.blocks[blocks.worst].line}});
-  }
-  return list;
+/// The worst block of those that cut.
+const Schema<BlockLine>& worst_table() {
+  const auto named = [](const std::vector<Row<BlockLine>>& from, std::initializer_list<std::string_view> names) {
+    std::vector<Row<BlockLine>> out;
+    for (const std::string_view name : names)
+      out.push_back(*std::ranges::find_if(from, [&](const Row<BlockLine>& row) { return row.key.name == name; }));
+    for (Row<BlockLine>& row : out) row.key.nullable = row.key.holds == io::Holds::number;
+    return out;
+  };
+  static const Schema<BlockLine> table(
+      "worst_block", "the block nearest to chatter, of those that cut",
+      [&] {
+        std::vector<Row<BlockLine>> rows = named(block_place_keys(), {"block", "line"});
+        add_rows(rows, named(block_stability_keys(), {"axial_depth_mm", "limit_depth_mm", "stability_margin"}));
+        add_rows(rows, named(block_load_keys(), {"gain_margin"}));
+        add_rows(rows, named(block_stability_keys(), {"regime"}));
+        return rows;
+      }(),
+      Use::written);
+  return table;
 }
 
 }  // namespace
@@ -268,57 +355,73 @@ std::vector<std::string> block_notes(const ProgramBlocks& blocks) {
   return out;
 }
 
-Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  Json worst;
-  if (blocks.cutting > 0) {
-    const BlockRow& row = blocks.rows[blocks.worst];
-    worst = {{"block", blocks.worst + 1},
-             {"line", forces.program->program.blocks[blocks.worst].line},
-             {"axial_depth_mm", number(row.axial_depth_m / units::mm)},
-             {"limit_depth_mm", number(row.stability.at.limit_depth_m / units::mm)},
-             {"stability_margin", number(row.stability_margin)},
-             {"gain_margin", number(row.stability.at.gain_margin)},
-             {"regime", to_string(row.stability.regime)}};
-  }
-  std::vector<std::string> notes = block_warnings(forces, blocks);
-  std::ranges::move(block_notes(blocks), std::back_inserter(notes));
-  const auto lost = std::ranges::count_if(
-      forces.program->blocks, [](const BlockResult& block) { return block.settled == BlockResult::Settled::lost; });
-  return {{"engagement_lost", lost},     {"blocks", blocks.rows.size()},      {"cutting", blocks.cutting},
-          {"unstable", blocks.unstable}, {"evaluations", blocks.evaluations}, {"seconds", number(blocks.seconds)},
-          {"worst", std::move(worst)},   {"notes", std::move(notes)}};
+const Schema<BlocksView>& blocks_summary_table() {
+  static const Schema<BlocksView> table(
+      "blocks_summary", "how many blocks there are, how many chatter, and the worst",
+      {key(
+           "engagement_lost",
+           [](const BlocksView& view) {
+             return std::ranges::count_if(view.forces->program->blocks, [](const BlockResult& block) {
+               return block.settled == BlockResult::Settled::lost;
+             });
+           },
+           "blocks in which the tool is pushed out of the cut"),
+       key(
+           "blocks", [](const BlocksView& view) { return view.blocks->rows.size(); }, "of the program"),
+       key(
+           "cutting", [](const BlocksView& view) { return view.blocks->cutting; }, "that cut"),
+       key(
+           "unstable", [](const BlocksView& view) { return view.blocks->unstable; }, "predicted to chatter"),
+       key(
+           "evaluations", [](const BlocksView& view) { return view.blocks->evaluations; }, "different cuts computed"),
+       key(
+           "seconds", [](const BlocksView& view) { return view.blocks->seconds; }, "computing time"),
+       key(
+           "worst",
+           [](const BlocksView& view) {
+             return view.blocks->cutting > 0 ? std::optional(block_lines(view)[view.blocks->worst]) : std::nullopt;
+           },
+           worst_table(), "none: no block cuts")
+           .nullable(),
+       key(
+           "notes",
+           [](const BlocksView& view) {
+             std::vector<std::string> notes = block_warnings(*view.forces, *view.blocks);
+             std::ranges::move(block_notes(*view.blocks), std::back_inserter(notes));
+             return notes;
+           },
+           "sentences for the user")},
+      Use::written);
+  return table;
+}
+
+const Schema<BlocksView>& blocks_table() {
+  static const Schema<BlocksView> table(
+      "blocks", "stability of every block of a program",
+      {columns_key(
+           "blocks", [](const BlocksView& view) { return block_lines(view); }, block_columns(), "by columns"),
+       key(
+           "summary", [](const BlocksView& view) { return &view; }, blocks_summary_table(), "of the program"),
+       key(
+           "limit_over",
+           [](const BlocksView& view) {
+             const std::size_t worst = view.blocks->worst;
+             std::vector<ScanView> out;
+             for (const LimitScan& scan : view.blocks->scans)
+               out.push_back({&scan, worst, view.forces->program->program.blocks[worst].line});
+             return out;
+           },
+           scan_table(), "scans of the limit around the worst block")},
+      Use::written, 1);
+  return table;
 }
 
 std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  const std::vector<BlockColumn> columns = block_columns(forces);
-  std::string text;
-  for (const BlockColumn& column : columns) text += (text.empty() ? "" : ",") + column.name;
-  text += '\n';
-  each_block(forces, blocks, [&](const BlockLine& row) {
-    for (const BlockColumn& column : columns) {
-      if (&column != &columns.front()) text += ',';
-      append_block_cell(text, block_cell(column, row));
-    }
-    text += '\n';
-  });
-  return text;
-}
-
-Json blocks_object(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  const std::vector<BlockColumn> columns = block_columns(forces);
-  std::vector<Json> lists(columns.size(), Json::array());
-  each_block(forces, blocks, [&](const BlockLine& row) {
-    for (std::size_t k = 0; k < columns.size(); ++k) lists[k].push_back(block_cell(columns[k], row));
-  });
-  Json by_column = Json::object();
-  for (std::size_t k = 0; k < columns.size(); ++k) by_column[columns[k].name] = std::move(lists[k]);
-  return {{"blocks", std::move(by_column)},
-          {"summary", blocks_summary(forces, blocks)},
-          {"limit_over", scans_json(forces, blocks)}};
+  return block_columns().csv(block_lines({&forces, &blocks}));
 }
 
 std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  return io::dump(blocks_object(forces, blocks));
+  return io::dump(blocks_table().write({&forces, &blocks}));
 }
 
 }  // namespace robomill::process

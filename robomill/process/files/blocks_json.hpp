@@ -1,12 +1,17 @@
 #pragma once
-#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
 #include "robomill/process/blocks.hpp"
 
 namespace robomill::process {
 
-/// Of blocks.json how many blocks there are, how many chatter, and the worst.
-[[nodiscard]] io::Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks);
-/// blocks.json.
-[[nodiscard]] io::Json blocks_object(const ForcesResult& forces, const ProgramBlocks& blocks);
+/// The blocks of a program with the forces that they were judged by.
+struct BlocksView {
+  const ForcesResult* forces = nullptr;
+  const ProgramBlocks* blocks = nullptr;
+};
+/// blocks.json
+[[nodiscard]] const io::Schema<BlocksView>& blocks_table();
+/// Of it how many blocks there are, how many chatter, and the worst: for plan.json.
+[[nodiscard]] const io::Schema<BlocksView>& blocks_summary_table();
 
 }  // namespace robomill::process

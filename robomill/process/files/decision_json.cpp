@@ -4,18 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/json.hpp"
 #include "robomill/process/blocks/named_block.hpp"
 
 namespace robomill::process {
 namespace {
 
 using decision::ProgramLimit;
-using io::Json;
-using io::number;
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
 
 /// How a limit is written: its name, its unit, and what that is in SI.
 struct LimitWords {
@@ -49,61 +53,11 @@ const LimitWords* words_of(ProgramLimit limit) {
   return words == std::end(limit_words) ? nullptr : words;
 }
 
-double feed_of(double feed_m_per_s) {
-  return feed_m_per_s / units::mm * units::minute;
-}
-
-std::size_t line_of(const ForcesResult& forces, std::size_t block) {
-  return forces.program->program.blocks[block].line;
-}
-
-Json outcome_json(const Outcome& outcome, const ForcesResult& forces) {
-  Json violations = Json::array();
-  for (const Violation& v : outcome.violations) {
-    const LimitWords* words = words_of(v.limit);
-    const double factor = words != nullptr ? words->factor : 1.0;
-    violations.push_back({{"limit", decision::to_string(v.limit)},
-                          {"block", v.block + 1},
-                          {"line", line_of(forces, v.block)},
-                          {"value", number(v.value / factor)},
-                          {"allowed", number(v.allowed / factor)},
-                          {"unit", words != nullptr ? words->unit : ""}});
-  }
-  return {
-      {"cutting_time_s", number(outcome.cutting_time_s)},
-      {"robot_time_s", number(outcome.robot_time_s)},
-      {"total_time_s", number(outcome.total_time_s)},
-      {"lowest_spindle_speed_rpm", number(outcome.lowest_spindle_speed_rad_per_s / units::rpm)},
-      {"highest_spindle_speed_rpm", number(outcome.highest_spindle_speed_rad_per_s / units::rpm)},
-      {"unstable_blocks", outcome.unstable_blocks},
-      {"uncertain_blocks", outcome.uncertain_blocks},
-      {"least_stability_margin", number(outcome.least_stability_margin)},
-      {"peak_force_n", number(outcome.peak_force_n)},
-      {"revolution_torque_n_m", number(outcome.revolution_torque_n_m)},
-      {"sustained_power_w", number(outcome.sustained_power_w)},
-      {"peak_deflection_um", number(outcome.peak_deflection_m / units::um)},
-      {"worst_surface_error_um", number(outcome.worst_surface_error_m / units::um)},
-      {"peak_vibration_um", number(outcome.peak_vibration_m / units::um)},
-      {"greatest_torque_share", outcome.greatest_torque_share > 0.0 ? number(outcome.greatest_torque_share) : Json()},
-      {"reversals", outcome.reversals},
-      {"violations", std::move(violations)}};
-}
-
-Json alternatives_json(const Decision& result, const ForcesResult& forces) {
-  Json rows = Json::array();
-  for (const RejectedAlternative& one : result.alternatives) {
-    const bool slower = one.speed.stopped_by.limit == ProgramLimit::none;
-    std::string stopped = limit_text(one.speed.stopped_by);
-    if (!slower) stopped += " in " + named_block(forces, one.block);
-    rows.push_back({{"spindle_speed_rpm", number(one.speed.spindle_speed_rad_per_s / units::rpm)},
-                    {"stretch", one.speed.stretch + 1},
-                    {"cutting_time_s", number(one.speed.cutting_time_s)},
-                    {"stopped_by", std::move(stopped)},
-                    {"limit", slower ? Json() : Json(decision::to_string(one.speed.stopped_by.limit))},
-                    {"block", slower ? Json() : Json(one.block + 1)},
-                    {"line", slower ? Json() : Json(line_of(forces, one.block))}});
-  }
-  return rows;
+template <class E, std::size_t n>
+std::vector<std::string> names_of(const Name<E> (&names)[n]) {
+  std::vector<std::string> out;
+  for (const auto& [name, value] : names) out.emplace_back(name);
+  return out;
 }
 
 /// "chip thickness of 0.05 mm": the limit that a feed goes up to.
@@ -114,57 +68,225 @@ std::string reached_text(const decision::LimitUse& use) {
   return fmt::format("{} of {:.3g}{}", words->name, use.allowed / words->factor, unit);
 }
 
-Json stretches_json(const Decision& result, const ForcesResult& forces) {
-  Json rows = Json::array();
-  for (const DecidedLines& lines : result.stretches) {
-    rows.push_back(
-        {{"first_block", lines.first_block + 1},
-         {"last_block", lines.last_block + 1},
-         {"first_line", line_of(forces, lines.first_block)},
-         {"last_line", line_of(forces, lines.last_block)},
-         {"spindle_speed_rpm", number(lines.spindle_speed_rad_per_s / units::rpm)},
-         {"lead_deg", number(lines.lead_rad / units::deg)},
-         {"tilt_deg", number(lines.tilt_rad / units::deg)},
-         {"lowest_feed_mm_per_min", number(feed_of(lines.lowest_feed_m_per_s))},
-         {"highest_feed_mm_per_min", number(feed_of(lines.highest_feed_m_per_s))},
-         {"cutting_time_s", number(lines.cutting_time_s)},
-         {"limited_by", reached_text(lines.limited_by) + " in " + named_block(forces, lines.limiting_block)}});
-  }
-  return rows;
-}
+// What a table is written from: a part of the decision, with the program whose blocks it names.
 
-Json gamma_map_json(const GammaMap& map) {
-  Json out = {{"block", Json::array()},  {"path_mm", Json::array()},    {"gamma_deg", Json::array()},
-              {"margin", Json::array()}, {"chosen_deg", Json::array()}, {"programmed_deg", Json::array()}};
-  for (const std::size_t block : map.block) out["block"].push_back(block + 1);
-  for (const double way : map.path_m) out["path_mm"].push_back(number(way / units::mm));
-  for (const double gamma : map.gamma_rad) out["gamma_deg"].push_back(number(gamma / units::deg));
-  for (Eigen::Index g = 0; g < map.margin.rows(); ++g) {
-    Json row = Json::array();
-    for (Eigen::Index i = 0; i < map.margin.cols(); ++i) row.push_back(number(map.margin(g, i)));
-    out["margin"].push_back(std::move(row));
-  }
-  for (const double gamma : map.chosen_rad) {
-    out["chosen_deg"].push_back(number(gamma / units::deg));
-    out["programmed_deg"].push_back(0.0);
-  }
-  out["least_margin"] = number(map.least_margin);
+template <class Part>
+struct Of {
+  const Part* part = nullptr;
+  const ForcesResult* forces = nullptr;
+  [[nodiscard]] std::size_t line(std::size_t block) const { return forces->program->program.blocks[block].line; }
+};
+template <class Part>
+std::vector<Of<Part>> each_of(const std::vector<Part>& parts, const ForcesResult* forces) {
+  std::vector<Of<Part>> out;
+  for (const Part& part : parts) out.push_back({&part, forces});
   return out;
 }
+/// Keys of the part itself.
+template <class Part>
+std::vector<Row<Of<Part>>> own(const std::vector<Row<Part>>& rows) {
+  return io::keys_of<Of<Part>>(rows, [](const Of<Part>& at) -> const Part& { return *at.part; });
+}
 
-Json compensation_json(const Compensation& compensation) {
-  std::size_t moved = 0;
-  for (const CompensatedBlock& block : compensation.blocks) {
-    const bool along =
-        block.state == CompensatedBlock::State::compensated || block.state == CompensatedBlock::State::bounded;
-    if (along) ++moved;
-  }
-  return {{"settled", compensation.status == Compensation::Status::settled},
-          {"blocks", moved},
-          {"passes", compensation.passes},
-          {"rms_before_um", number(compensation.rms_before_m / units::um)},
-          {"rms_after_um", number(compensation.rms_after_m / units::um)},
-          {"largest_offset_um", number(compensation.largest_offset_m / units::um)}};
+const Schema<Of<Violation>>& violation_table() {
+  using At = Of<Violation>;
+  const auto in_words = [](double value, const Violation& violation) {
+    const LimitWords* words = words_of(violation.limit);
+    return words != nullptr ? value / words->factor : value;
+  };
+  static const Schema<At> table(
+      "violation", "the worst violation of a limit",
+      {key(
+           "limit", [](const At& at) { return at.part->limit; }, decision::program_limit_names, "which"),
+       key(
+           "block", [](const At& at) { return at.part->block + 1; }, "where"),
+       key(
+           "line", [](const At& at) { return at.line(at.part->block); }, "its line"),
+       key(
+           "value", [in_words](const At& at) { return in_words(at.part->value, *at.part); }, "in `unit`")
+           .nullable(),
+       key(
+           "allowed", [in_words](const At& at) { return in_words(at.part->allowed, *at.part); }, "in `unit`")
+           .nullable(),
+       key(
+           "unit",
+           [](const At& at) {
+             const LimitWords* words = words_of(at.part->limit);
+             return words != nullptr ? words->unit : "";
+           },
+           "of both; empty: none")},
+      Use::written);
+  return table;
+}
+
+const Schema<Of<Outcome>>& outcome_table() {
+  static const Schema<Of<Outcome>> table(
+      "outcome", "what a program comes to",
+      [] {
+        std::vector<Row<Of<Outcome>>> rows = own<Outcome>(
+            {key("cutting_time_s", &Outcome::cutting_time_s, "of the blocks that cut, by their feeds").nullable(),
+             key("robot_time_s", &Outcome::robot_time_s, "of the robot's trajectory; none: not known").nullable(),
+             key("total_time_s", &Outcome::total_time_s, "of the program").nullable(),
+             key("lowest_spindle_speed_rpm", &Outcome::lowest_spindle_speed_rad_per_s, "while it cuts").nullable(),
+             key("highest_spindle_speed_rpm", &Outcome::highest_spindle_speed_rad_per_s, "while it cuts").nullable(),
+             key("unstable_blocks", &Outcome::unstable_blocks, "predicted to chatter"),
+             key("uncertain_blocks", &Outcome::uncertain_blocks, "stable, with a margin below 0"),
+             key("least_stability_margin", &Outcome::least_stability_margin, "of the blocks").nullable(),
+             key("peak_force_n", &Outcome::peak_force_n, "largest").nullable(),
+             key("revolution_torque_n_m", &Outcome::revolution_torque_n_m, "largest mean over a revolution").nullable(),
+             key("sustained_power_w", &Outcome::sustained_power_w, "largest").nullable(),
+             key("peak_deflection_um", &Outcome::peak_deflection_m, "largest, of the tip").nullable(),
+             key("worst_surface_error_um", &Outcome::worst_surface_error_m, "of greatest magnitude").nullable(),
+             key("peak_vibration_um", &Outcome::peak_vibration_m, "largest forced vibration").nullable(),
+             key(
+                 "greatest_torque_share",
+                 [](const Outcome& outcome) { return io::if_positive(outcome.greatest_torque_share); },
+                 "of a drive's limit; none: not known")
+                 .nullable(),
+             key("reversals", &Outcome::reversals, "blocks in which the load of a joint reverses")});
+        rows.push_back(key(
+            "violations", [](const Of<Outcome>& at) { return each_of(at.part->violations, at.forces); },
+            violation_table(), "the worst of each limit"));
+        return rows;
+      }(),
+      Use::written);
+  return table;
+}
+
+const Schema<Of<RejectedAlternative>>& alternative_table() {
+  using At = Of<RejectedAlternative>;
+  const auto slower = [](const At& at) { return at.part->speed.stopped_by.limit == ProgramLimit::none; };
+  static const Schema<At> table(
+      "rejected_alternative", "a speed that was not taken",
+      {key(
+           "spindle_speed_rpm", [](const At& at) { return at.part->speed.spindle_speed_rad_per_s; }, "spindle speed"),
+       key(
+           "stretch", [](const At& at) { return at.part->speed.stretch + 1; }, "of the program, from 1"),
+       key(
+           "cutting_time_s", [](const At& at) { return at.part->speed.cutting_time_s; }, "with it")
+           .nullable(),
+       key(
+           "stopped_by",
+           [slower](const At& at) {
+             const std::string text = limit_text(at.part->speed.stopped_by);
+             return slower(at) ? text : text + " in " + named_block(*at.forces, at.part->block);
+           },
+           "in words"),
+       key(
+           "limit",
+           [slower](const At& at) { return slower(at) ? "" : decision::to_string(at.part->speed.stopped_by.limit); },
+           "which; none: slower")
+           .words(names_of(decision::program_limit_names))
+           .nullable(),
+       key(
+           "block", [slower](const At& at) { return slower(at) ? std::nullopt : std::optional(at.part->block + 1); },
+           "where")
+           .nullable(),
+       key(
+           "line",
+           [slower](const At& at) { return slower(at) ? std::nullopt : std::optional(at.line(at.part->block)); },
+           "its line")
+           .nullable()},
+      Use::written);
+  return table;
+}
+
+const Schema<Of<DecidedLines>>& stretch_table() {
+  using At = Of<DecidedLines>;
+  static const Schema<At> table(
+      "decided_stretch", "lines that cut one after the other, at one spindle speed",
+      {key(
+           "first_block", [](const At& at) { return at.part->first_block + 1; }, "number in the program"),
+       key(
+           "last_block", [](const At& at) { return at.part->last_block + 1; }, "number in the program"),
+       key(
+           "first_line", [](const At& at) { return at.line(at.part->first_block); }, "its line"),
+       key(
+           "last_line", [](const At& at) { return at.line(at.part->last_block); }, "its line"),
+       key(
+           "spindle_speed_rpm", [](const At& at) { return at.part->spindle_speed_rad_per_s; }, "decided"),
+       key(
+           "lead_deg", [](const At& at) { return at.part->lead_rad; }, "from the programmed axis"),
+       key(
+           "tilt_deg", [](const At& at) { return at.part->tilt_rad; }, "from the programmed axis"),
+       key(
+           "lowest_feed_mm_per_min",
+           [](const At& at) { return at.part->lowest_feed_m_per_s / units::mm * units::minute; }, "decided")
+           .in_unit(),
+       key(
+           "highest_feed_mm_per_min",
+           [](const At& at) { return at.part->highest_feed_m_per_s / units::mm * units::minute; }, "decided")
+           .in_unit(),
+       key(
+           "cutting_time_s", [](const At& at) { return at.part->cutting_time_s; }, "of these lines"),
+       key(
+           "limited_by",
+           [](const At& at) {
+             return reached_text(at.part->limited_by) + " in " + named_block(*at.forces, at.part->limiting_block);
+           },
+           "in words")},
+      Use::written);
+  return table;
+}
+
+const Schema<GammaMap>& gamma_map_table() {
+  static const Schema<GammaMap> table(
+      "gamma_map", "stability margin over the path and the turn of the flange about the tool's axis",
+      {key(
+           "block",
+           [](const GammaMap& map) {
+             std::vector<std::size_t> out = map.block;
+             for (std::size_t& block : out) ++block;
+             return out;
+           },
+           "of each column"),
+       key("path_mm", &GammaMap::path_m, "at the end of each"), key("gamma_deg", &GammaMap::gamma_rad, "of each row"),
+       key("margin", &GammaMap::margin, "a row a turn; none: the robot cannot stand there").nullable(),
+       key("chosen_deg", &GammaMap::chosen_rad, "of each column"),
+       key(
+           "programmed_deg", [](const GammaMap& map) { return std::vector<double>(map.chosen_rad.size(), 0.0); },
+           "of each column"),
+       key("least_margin", &GammaMap::least_margin, "of the chosen turns").nullable()},
+      Use::written);
+  return table;
+}
+
+const Schema<Compensation>& compensation_table() {
+  static const Schema<Compensation> table(
+      "compensation", "the path of finishing passes moved by the predicted deflection",
+      {key(
+           "settled", [](const Compensation& c) { return c.status == Compensation::Status::settled; },
+           "offsets and what they do to the force agree"),
+       key(
+           "blocks",
+           [](const Compensation& c) {
+             return std::ranges::count_if(c.blocks, [](const CompensatedBlock& block) {
+               return block.state == CompensatedBlock::State::compensated ||
+                      block.state == CompensatedBlock::State::bounded;
+             });
+           },
+           "that were moved"),
+       key("passes", &Compensation::passes, "offsets that were tried"),
+       key("rms_before_um", &Compensation::rms_before_m, "error of the surface").nullable(),
+       key("rms_after_um", &Compensation::rms_after_m, "error of the surface").nullable(),
+       key("largest_offset_um", &Compensation::largest_offset_m, "of a block's end").nullable()},
+      Use::written);
+  return table;
+}
+
+const Schema<DecisionView>& changes_table() {
+  static const Schema<DecisionView> table(
+      "decided_changes", "what the new program changes",
+      {key(
+           "lines", [](const DecisionView& view) { return view.output.changed_lines; },
+           "of the text; none: there is no new one")
+           .nullable(),
+       key(
+           "speeds", [](const DecisionView& view) { return view.decision->speeds_changed; }, "changes of S"),
+       key(
+           "feeds", [](const DecisionView& view) { return view.decision->feeds_changed; }, "changes of F")},
+      Use::written);
+  return table;
 }
 
 }  // namespace
@@ -184,29 +306,68 @@ std::string limit_text(const decision::LimitUse& use) {
                      at_least ? "at least" : "at most", use.allowed / words->factor, unit);
 }
 
-Json decision_object(const Decision& result, const ForcesResult& forces, const DecideOptions& options,
-                     const DecisionOutput& output) {
-  Json free = Json::array();
-  for (const Free what : options.free) free.push_back(name_in(free_names, what));
-  Json out = {{"status", result.status == Decision::Status::found ? "found" : "infeasible"},
-              {"reason", result.reason},
-              {"goal", name_in(goal_names, options.goal)},
-              {"free", std::move(free)},
-              {"collisions_checked", output.collisions_checked},
-              {"evaluations", result.evaluations},
-              {"exact_runs", result.exact_runs},
-              {"seconds", number(result.seconds)},
-              {"as_programmed", outcome_json(result.as_programmed, forces)},
-              {"decided", result.decided ? outcome_json(*result.decided, forces) : Json()},
-              {"alternatives", alternatives_json(result, forces)},
-              {"stretches", stretches_json(result, forces)},
-              {"notes", result.notes},
-              {"compensation", result.compensation ? compensation_json(*result.compensation) : Json()},
-              {"gamma_map", result.gamma_map ? gamma_map_json(*result.gamma_map) : Json()}};
-  out["changes"] = {{"lines", output.changed_lines ? Json(*output.changed_lines) : Json()},
-                    {"speeds", result.speeds_changed},
-                    {"feeds", result.feeds_changed}};
-  return out;
+const Schema<DecisionView>& decision_table() {
+  using View = DecisionView;
+  static const Schema<View> table(
+      "decision", "spindle speeds, feeds and γ of a program, as chosen",
+      {key(
+           "status",
+           [](const View& v) { return v.decision->status == Decision::Status::found ? "found" : "infeasible"; },
+           "whether conditions keep every limit")
+           .words({"found", "infeasible"}),
+       key(
+           "reason", [](const View& v) { return v.decision->reason; }, "in words"),
+       key(
+           "goal", [](const View& v) { return v.options->goal; }, goal_names, "that was asked for"),
+       key(
+           "free",
+           [](const View& v) {
+             std::vector<std::string> out;
+             for (const Free what : v.options->free) out.emplace_back(name_in(free_names, what));
+             return out;
+           },
+           "what could be chosen")
+           .words(names_of(free_names)),
+       key(
+           "collisions_checked", [](const View& v) { return v.output.collisions_checked; }, "along the way to run"),
+       key(
+           "evaluations", [](const View& v) { return v.decision->evaluations; }, "cuts computed"),
+       key(
+           "exact_runs", [](const View& v) { return v.decision->exact_runs; }, "of the whole program"),
+       key(
+           "seconds", [](const View& v) { return v.decision->seconds; }, "computing time"),
+       key(
+           "as_programmed",
+           [](const View& v) {
+             return Of<Outcome>{&v.decision->as_programmed, v.forces};
+           },
+           outcome_table(), "the program as it is"),
+       key(
+           "decided",
+           [](const View& v) {
+             return v.decision->decided ? std::optional(Of<Outcome>{&*v.decision->decided, v.forces}) : std::nullopt;
+           },
+           outcome_table(), "the program as decided")
+           .nullable(),
+       key(
+           "alternatives", [](const View& v) { return each_of(v.decision->alternatives, v.forces); },
+           alternative_table(), "speeds that were not taken"),
+       key(
+           "stretches", [](const View& v) { return each_of(v.decision->stretches, v.forces); }, stretch_table(),
+           "of one speed each"),
+       key(
+           "notes", [](const View& v) { return v.decision->notes; }, "sentences for the user"),
+       key(
+           "compensation", [](const View& v) { return v.decision->compensation; }, compensation_table(),
+           "where it was asked for")
+           .nullable(),
+       key(
+           "gamma_map", [](const View& v) { return v.decision->gamma_map; }, gamma_map_table(), "where γ was free")
+           .nullable(),
+       key(
+           "changes", [](const View& v) { return &v; }, changes_table(), "of the program")},
+      Use::written);
+  return table;
 }
 
 }  // namespace robomill::process

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
 #include "robomill/process/decide.hpp"
 
 namespace robomill::process {
@@ -14,9 +14,12 @@ struct DecisionOutput {
 };
 
 /// The decision of plan.json.
-/// @param forces   of the decided program; without one, of the program as it was
-/// @param options  that it was made with
-[[nodiscard]] io::Json decision_object(const Decision& result, const ForcesResult& forces, const DecideOptions& options,
-                                       const DecisionOutput& output);
+struct DecisionView {
+  const Decision* decision = nullptr;
+  const ForcesResult* forces = nullptr;    ///< of the decided program; without one, of the program as it was
+  const DecideOptions* options = nullptr;  ///< that it was made with
+  DecisionOutput output = {};
+};
+[[nodiscard]] const io::Schema<DecisionView>& decision_table();
 
 }  // namespace robomill::process

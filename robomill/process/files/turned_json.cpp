@@ -25,7 +25,7 @@ Json turned_object(const TurnedProgram& turned) {
     gamma["margin"].push_back(number(turned.blocks.rows[turned.shown[k]].stability_margin));
   }
   const ProgramBlocks& blocks = turned.blocks;
-  return {{"blocks", blocks_object(turned.forces, blocks)},
+  return {{"blocks", blocks_table().write({&turned.forces, &blocks})},
           {"lost", std::move(lost)},
           {"gamma", std::move(gamma)},
           {"unstable", blocks.unstable},

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
-#include "robomill/io/json.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -14,42 +16,113 @@ const char* unit_of(const Joint& joint) {
   return joint.prismatic ? "N/m" : "N m/rad";
 }
 
+using io::key;
+using io::Row;
+using io::Schema;
+using View = StiffnessView;
+
+/// A list with an entry a joint.
+template <class F>
+Row<View> of_joints(std::string name, F value, std::string meaning) {
+  return key(
+      std::move(name),
+      [value](const View& view) {
+        std::vector<decltype(value(view.found->joints.front()))> out;
+        for (const IdentifiedJoint& joint : view.found->joints) out.push_back(value(joint));
+        return out;
+      },
+      std::move(meaning));
+}
+
+const Schema<IdentifiedStiffness>& convergence_table() {
+  using Status = IdentifiedStiffness::Status;
+  static constexpr Name<Status> names[] = {{"converged", Status::converged}, {"not converged", Status::not_converged}};
+  static const Schema<IdentifiedStiffness> table("convergence", "of the search",
+                                                 {key("status", &IdentifiedStiffness::status, names, "how it ended"),
+                                                  key("iterations", &IdentifiedStiffness::iterations, "how many")},
+                                                 io::Use::written);
+  return table;
+}
+
+std::vector<Row<View>> joint_keys() {
+  return {of_joints(
+              "joint_stiffness_n_m_per_rad",
+              [](const IdentifiedJoint& joint) {
+                return joint.identifiable ? std::optional(joint.stiffness) : std::nullopt;
+              },
+              "of each joint, in its unit; none: not identifiable")
+              .nullable(),
+          key(
+              "unit",
+              [](const View& view) {
+                std::vector<std::string> out;
+                for (const Joint& joint : view.arm->joints) out.emplace_back(unit_of(joint));
+                return out;
+              },
+              "of each joint's stiffness")
+              .words({"N m/rad", "N/m"}),
+          of_joints(
+              "std", [](const IdentifiedJoint& joint) { return joint.deviation; }, "of the stiffness")
+              .nullable(),
+          of_joints(
+              "identifiable", [](const IdentifiedJoint& joint) { return joint.identifiable; }, "by the loads"),
+          of_joints(
+              "reason",
+              [](const IdentifiedJoint& joint) {
+                return joint.reason.empty() ? std::nullopt : std::optional(joint.reason);
+              },
+              "why not")
+              .nullable(),
+          of_joints(
+              "joint_compliance_rad_per_n_m", [](const IdentifiedJoint& joint) { return joint.compliance; },
+              "inverse of the stiffness")
+              .nullable(),
+          of_joints(
+              "compliance_std", [](const IdentifiedJoint& joint) { return joint.compliance_deviation; },
+              "of the compliance")
+              .nullable()};
+}
+
 }  // namespace
 
+const Schema<View>& stiffness_table() {
+  static const Schema<View> table(
+      "stiffness", "joint stiffness, from loads and the displacements measured",
+      [] {
+        std::vector<Row<View>> rows = joint_keys();
+        const auto found = [](auto IdentifiedStiffness::*member) {
+          return [member](const View& view) { return view.found->*member; };
+        };
+        add_rows(
+            rows,
+            {key(
+                 "line", [](const View& view) { return view.loads->line; }, "of each load in its file"),
+             key(
+                 "displacement_mm",
+                 [](const View& view) {
+                   std::vector<Eigen::Vector3d> out;
+                   for (const Load& load : view.loads->loads) out.emplace_back(load.displacement_m);
+                   return out;
+                 },
+                 "measured, of each load"),
+             key(
+                 "residual_mm", [](const View& view) { return Eigen::MatrixXd(view.found->residual_m.transpose()); },
+                 "measured less model, of each load")
+                 .nullable(),
+             key("rms_mm", found(&IdentifiedStiffness::rms_m), "of the residuals").nullable(),
+             key("r_squared", found(&IdentifiedStiffness::r_squared), "share of the displacements that is explained")
+                 .nullable(),
+             key("condition_number", found(&IdentifiedStiffness::condition_number), "of the least squares").nullable(),
+             key(
+                 "convergence", [](const View& view) { return view.found; }, convergence_table(), "of the search")});
+        return rows;
+      }(),
+      io::Use::written, 1);
+  return table;
+}
+
 std::string stiffness_json(const IdentifiedStiffness& result, const Arm& arm, const LoadsFile& file) {
-  io::Json stiffness = io::Json::array(), deviation = io::Json::array(), identifiable = io::Json::array(),
-           reason = io::Json::array(), unit = io::Json::array();
-  io::Json compliance = io::Json::array(), compliance_deviation = io::Json::array();
-  for (const Joint& joint : arm.joints) unit.push_back(unit_of(joint));
-  for (const IdentifiedJoint& joint : result.joints) {
-    stiffness.push_back(joint.identifiable ? io::number(joint.stiffness) : io::Json());
-    deviation.push_back(io::number(joint.deviation));
-    compliance.push_back(io::number(joint.compliance));
-    compliance_deviation.push_back(io::number(joint.compliance_deviation));
-    identifiable.push_back(joint.identifiable);
-    reason.push_back(joint.reason.empty() ? io::Json() : io::Json(joint.reason));
-  }
-  io::Json residual = io::Json::array(), displacement = io::Json::array();
-  for (Eigen::Index k = 0; k < result.residual_m.cols(); ++k)
-    residual.push_back(io::numbers_in(units::mm, result.residual_m.col(k)));
-  for (const Load& load : file.loads) displacement.push_back(io::numbers_in(units::mm, load.displacement_m));
-  io::Json json;
-  json["joint_stiffness_n_m_per_rad"] = stiffness;
-  json["unit"] = unit;
-  json["std"] = deviation;
-  json["identifiable"] = identifiable;
-  json["reason"] = reason;
-  json["joint_compliance_rad_per_n_m"] = compliance;
-  json["compliance_std"] = compliance_deviation;
-  json["line"] = file.line;
-  json["displacement_mm"] = displacement;
-  json["residual_mm"] = residual;
-  json["rms_mm"] = io::number(result.rms_m / units::mm);
-  json["r_squared"] = io::number(result.r_squared);
-  json["condition_number"] = io::number(result.condition_number);
-  const bool converged = result.status == IdentifiedStiffness::Status::converged;
-  json["convergence"] = {{"status", converged ? "converged" : "not converged"}, {"iterations", result.iterations}};
-  return io::dump(json);
+  return io::dump(stiffness_table().write({.found = &result, .arm = &arm, .loads = &file}));
 }
 
 std::string stiffness_csv(const IdentifiedStiffness& result, const Arm& arm) {

@@ -1,13 +1,20 @@
 #pragma once
 #include <string>
 
+#include "robomill/io/schema.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/files/loads_csv.hpp"
 #include "robomill/robot/identify.hpp"
 
 namespace robomill::robot {
 
-/// stiffness.json: what was found of every joint, its deviation, measured displacements and residuals; docs/formats.md.
+struct StiffnessView {
+  const IdentifiedStiffness* found = nullptr;
+  const Arm* arm = nullptr;
+  const LoadsFile* loads = nullptr;
+};
+/// stiffness.json: what was found of every joint, its deviation, measured displacements and residuals.
+[[nodiscard]] const io::Schema<StiffnessView>& stiffness_table();
 [[nodiscard]] std::string stiffness_json(const IdentifiedStiffness& result, const Arm& arm, const LoadsFile& file);
 
 /// A row a joint; cells of one that is not identifiable are empty, and its reason stands there.

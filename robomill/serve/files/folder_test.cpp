@@ -167,16 +167,18 @@ TEST(FileKindTest, ResultsNameTheirDocument) {
   };
   // What a document holds inside makes it none of those.
   const std::string inside = R"([{"receptance_m_per_n": 1, "title": "", "created": "", "modes": [{"right": 1}]}])";
-  EXPECT_EQ(document("plan.json", R"({"agreement": {"agree": 1}, "recommended": )" + inside + "}"), "plan");
-  EXPECT_EQ(document("lobes.json", R"({"spindle_speed_rpm": [1], "axial_depth_mm": [0]})"), "lobes");
-  EXPECT_EQ(document("sweep.json", R"({"sweep": "lead", "spindle_speed_rpm": [1]})"), "lobes");
-  EXPECT_EQ(document("blocks.json", "{\"blocks\": [" + std::string(100'000, ' ')), "blocks");
-  EXPECT_EQ(document("tip.json", "{\"frequency_hz\": [1" + std::string(100'000, ' ')), "(frf)");
-  EXPECT_EQ(document("tip2.json", R"({"frequency_hz": [1], "receptance_m_per_n": {}})"), "(frf)");
-  EXPECT_EQ(document("modes.json", R"({"modes": [{"right": {}}]})"), "(modes)");
+  EXPECT_EQ(document("plan.json", R"({"document": "plan/1", "agreement": )" + inside + "}"), "plan");
+  EXPECT_EQ(document("lobes.json", R"({"document": "lobes/1", "spindle_speed_rpm": [1)"), "lobes");
+  EXPECT_EQ(document("sweep.json", R"({"document": "sweep/1", "sweep": "lead"})"), "lobes");
+  EXPECT_EQ(document("blocks.json", "{\"document\": \"blocks/1\", \"blocks\": [" + std::string(100'000, ' ')),
+            "blocks");
+  EXPECT_EQ(document("tip.json", "{\"document\": \"frf/1\", \"frequency_hz\": [1" + std::string(100'000, ' ')),
+            "(frf)");
+  EXPECT_EQ(document("modes.json", R"({"document": "modes/1", "modes": [{"right": {}}]})"), "(modes)");
   EXPECT_EQ(document("report.json", R"({"title": "", "created": "", "plan": null})"), "(report)");
   for (const char* other :
-       {"", "{", "[]", "3", "{\"a\": ", "no JSON", "{\"a\": {\"agreement\": 1, \"recommended\": 2}}"}) {
+       {"", "{", "[]", "3", "{\"a\": ", "no JSON", "{\"a\": {\"agreement\": 1, \"recommended\": 2}}",
+        R"({"document": "letter/1"})", R"({"document": 1})", R"({"a": {"document": "lobes/1"}})"}) {
     EXPECT_EQ(document("other.json", other), "(other)") << other;
   }
   EXPECT_EQ(document("deep.json", std::string(60'000, '[')), "(other)");

@@ -15,6 +15,7 @@
 #include "robomill/io/mat.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/jobs/files/schemas.hpp"
 #include "robomill/modal/files/frf_check.hpp"
 
 namespace robomill::serve {
@@ -68,17 +69,21 @@ FileKind kind_by(const std::vector<Signature>& signatures, const std::vector<std
   return {};
 }
 
-/// Collects the keys of the outermost object, as far as the text goes.
+/// Collects the keys of the outermost object, as far as the text goes, and what it says that it is.
 class Keys final : public nlohmann::json_sax<io::Json> {
  public:
   std::vector<std::string> names = {};
+  std::string document = {};  ///< "lobes/1"
 
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
   bool number_integer(number_integer_t) override { return true; }
   bool number_unsigned(number_unsigned_t) override { return true; }
   bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
+  bool string(string_t& text) override {
+    if (depth_ == 1 && names.back() == "document") document = text;
+    return true;
+  }
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override { return open(); }
   bool end_object() override { return close(); }
@@ -102,33 +107,24 @@ class Keys final : public nlohmann::json_sax<io::Json> {
   int depth_ = 0;
 };
 
+/// By the name that a document has: "lobes/1". A sweep and a comparison of methods are shown as lobes are.
+FileKind kind_of_document(std::string_view document) {
+  const std::string name(document.substr(0, document.find('/')));
+  const std::vector<std::string>& known = jobs::schema_names();
+  if (std::ranges::find(known, name + ".json") == known.end()) return {};
+  if (name == "frf" || name == "modes") return {.kind = name};
+  return {.kind = "result", .document = name == "sweep" || name == "comparison" ? "lobes" : name};
+}
+
 FileKind kind_of_json(const std::string& text) {
-  static const std::vector<Signature> documents = {
-      {{"title", "created"}, "report"},
-      {{"receptance_m_per_n"}, "frf"},
-      {{"agreement", "recommended"}, "result", "plan"},
-      {{"force_on"}, "result", "forces"},
-      {{"joint", "objective"}, "result", "joint"},
-      {{"coefficients", "identification"}, "result", "coefficients"},
-      {{"joint_stiffness_n_m_per_rad", "identifiable"}, "result", "stiffness"},
-      {{"postures", "placement"}, "result", "check"},
-      {{"method", "duration_s", "lower_bound_s"}, "result", "smooth"},
-      {{"setting", "verifying"}, "result", "calibration"},
-      {{"spindle_speed_rpm", "small_vibration"}, "result", "simulation"},
-      {{"spindle_speed_rpm", "peaks"}, "result", "explain"},
-      {{"spindle_speed_rpm", "axial_depth_mm"}, "result", "lobes"},
-      {{"spindle_speed_rpm", "sweep"}, "result", "lobes"},
-      {{"spindle_speed_rpm", "methods"}, "result", "lobes"},
-      {{"blocks"}, "result", "blocks"},
-      {{"tools"}, "result", "tools"}};
+  static const std::vector<Signature> documents = {{{"title", "created"}, "report"},
+                                                   {{"coefficients", "identification"}, "result", "coefficients"},
+                                                   {{"postures", "placement"}, "result", "check"},
+                                                   {{"tools"}, "result", "tools"}};
   Keys keys;
   io::Json::sax_parse(text, &keys, nlohmann::json::input_format_t::json, false);
-  FileKind known = kind_by(documents, keys.names);
-  if (known.kind != "other" || keys.names.empty()) return known;
-  // The lines of a long tip.json are longer than what was read of it.
-  if (keys.names.front() == "frequency_hz") return {.kind = "frf"};
-  if (keys.names.front() == "modes" && text.find("\"right\"") != std::string::npos) return {.kind = "modes"};
-  return known;
+  if (!keys.document.empty()) return kind_of_document(keys.document);
+  return kind_by(documents, keys.names);
 }
 
 /// The names of the columns, of the first line that is no comment.

@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/json.hpp"
 #include "robomill/io/mat.hpp"
 #include "robomill/io/sample_source.hpp"
 
@@ -62,12 +60,87 @@ void write_accelerations(const std::filesystem::path& path, const Simulation& re
   io::write_wav(path, samples, 2, result.sample_rate_hz);
 }
 
-io::Json small_json(const SmallVibration& small) {
-  if (small.status != SmallVibration::Status::found) return nullptr;
-  return {{"spectral_radius", io::number(small.spectral_radius)},
-          {"error_estimate", io::number(small.error_estimate)},
-          {"multiplier", io::complex_number(small.multiplier)},
-          {"period_s", io::number(small.period_s)}};
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
+
+const Schema<SmallVibration>& small_table() {
+  static const Schema<SmallVibration> table(
+      "small_vibration", "where a small vibration about the forced one goes",
+      {key("spectral_radius", &SmallVibration::spectral_radius, "of one period"),
+       key("error_estimate", &SmallVibration::error_estimate, "of the spectral radius").nullable(),
+       key("multiplier", &SmallVibration::multiplier, "the largest, [re, im]"),
+       key("period_s", &SmallVibration::period_s, "of the cut")},
+      Use::written);
+  return table;
+}
+
+const Schema<Wall>& wall_table() {
+  static const Schema<Wall> table(
+      "wall", "the wall that stays on the part; errors > 0: material is left",
+      {key("angle_deg", &Wall::angle_rad, "0: where teeth enter, 180: where they leave"),
+       key("location_error_um", &Wall::location_error_m, "mean over the heights"),
+       key("least_location_error_um", &Wall::least_location_error_m, "least over the heights"),
+       key("greatest_location_error_um", &Wall::greatest_location_error_m, "greatest over the heights"),
+       key("ra_um", &Wall::ra_m, "mean roughness along the feed, of the roughest height"),
+       key("rz_um", &Wall::rz_m, "highest to lowest, the same")},
+      Use::written);
+  return table;
+}
+
+std::vector<Row<Simulation>> found_keys() {
+  return {key("verdict", &Simulation::verdict, verdict_names, "of the last half of the time"),
+          key(
+              "chatter_frequency_hz", [](const Simulation& s) { return io::if_positive(s.chatter_frequency_hz); },
+              "strongest motion that is no harmonic of rotation; none: stable")
+              .nullable(),
+          key(
+              "chatter_amplitude_um",
+              [](const Simulation& s) {
+                return s.chatter_frequency_hz > 0.0 ? std::optional(s.chatter_amplitude_m) : std::nullopt;
+              },
+              "of it")
+              .nullable(),
+          key("growth_per_period", &Simulation::growth_per_period, "of what is not periodic; 0: too short").nullable(),
+          key("period_s", &Simulation::period_s, "of the cut: a tooth's, or a revolution or more").nullable(),
+          key(
+              "small_vibration",
+              [](const Simulation& s) { return s.small.status == SmallVibration::Status::found ? &s.small : nullptr; },
+              small_table(), "none: not found, or nothing vibrates")
+              .nullable(),
+          key("missed_share", &Simulation::missed_share, "of the time in which an edge in the cut touches nothing")
+              .nullable(),
+          key("walls", &Simulation::walls, wall_table(), "none without feed, or where there was too little time")};
+}
+
+std::vector<Row<Simulation>> force_keys() {
+  const auto by_axis = [](const Simulation& s, auto&& of_column) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(3);
+    for (Eigen::Index c = 0; c < 3 && s.force_n.rows() > 0; ++c) out(c) = of_column(s.force_n.col(c));
+    return out;
+  };
+  return {key(
+              "vibrating_peak_n",
+              [by_axis](const Simulation& s) {
+                return by_axis(s, [](const auto& column) { return column.cwiseAbs().maxCoeff(); });
+              },
+              "largest |force| on the tool in x, y, z"),
+          key("vibrating_peak_force_n", &Simulation::vibrating_peak_force_n, "largest force, entry included"),
+          key(
+              "mean_force_n",
+              [by_axis](const Simulation& s) { return by_axis(s, [](const auto& column) { return column.mean(); }); },
+              "mean in x, y, z"),
+          key(
+              "samples", [](const Simulation& s) { return s.force_n.rows(); }, "of the output"),
+          key("sample_rate_hz", &Simulation::sample_rate_hz, "of the output"),
+          key("steps_per_revolution", &Simulation::steps_per_revolution, "of the integration"),
+          key("slices", &Simulation::slices, "along the axis"),
+          key("error_estimate", &Simulation::error_estimate, "of the displacement over the first revolutions, relative")
+              .nullable(),
+          key("resolved", &Simulation::resolved, "error_estimate is within the tolerance"),
+          key("diverged", &Simulation::diverged, "the displacement reached 1 m; the columns end there"),
+          key("seconds", &Simulation::seconds, "computing time")};
 }
 
 }  // namespace
@@ -91,45 +164,28 @@ void write_simulation(const std::filesystem::path& path, const Simulation& resul
   }
 }
 
+const Schema<SimulationView>& simulation_table() {
+  static const Schema<SimulationView> table(
+      "simulation", "what the simulation of a cut found",
+      [] {
+        const auto of_result = [](std::vector<Row<Simulation>> rows) {
+          return io::keys_of<SimulationView>(
+              rows, [](const SimulationView& view) -> const Simulation& { return *view.simulation; });
+        };
+        std::vector<Row<SimulationView>> rows = {
+            key("spindle_speed_rpm", &SimulationView::spindle_speed_rad_per_s, "spindle speed"),
+            key("axial_depth_mm", &SimulationView::axial_depth_m, "axial depth")};
+        add_rows(rows, of_result(found_keys()));
+        add_rows(rows, of_result(force_keys()));
+        return rows;
+      }(),
+      Use::written, 1);
+  return table;
+}
+
 std::string simulation_json(const Simulation& result, double spindle_speed_rad_per_s, double axial_depth_m) {
-  const bool chatters = result.chatter_frequency_hz > 0.0;
-  io::Json json;
-  json["spindle_speed_rpm"] = io::number(spindle_speed_rad_per_s / units::rpm);
-  json["axial_depth_mm"] = io::number(axial_depth_m / units::mm);
-  json["verdict"] = to_string(result.verdict);
-  json["chatter_frequency_hz"] = chatters ? io::number(result.chatter_frequency_hz) : io::Json(nullptr);
-  json["chatter_amplitude_um"] = chatters ? io::number(result.chatter_amplitude_m / units::um) : io::Json(nullptr);
-  json["growth_per_period"] = io::number(result.growth_per_period);
-  json["period_s"] = io::number(result.period_s);
-  json["small_vibration"] = small_json(result.small);
-  json["missed_share"] = io::number(result.missed_share);
-  json["walls"] = io::Json::array();
-  for (const Wall& wall : result.walls) {
-    json["walls"].push_back({{"angle_deg", io::number(wall.angle_rad / units::deg)},
-                             {"location_error_um", io::number(wall.location_error_m / units::um)},
-                             {"least_location_error_um", io::number(wall.least_location_error_m / units::um)},
-                             {"greatest_location_error_um", io::number(wall.greatest_location_error_m / units::um)},
-                             {"ra_um", io::number(wall.ra_m / units::um)},
-                             {"rz_um", io::number(wall.rz_m / units::um)}});
-  }
-  io::Json peak = io::Json::array(), mean = io::Json::array();
-  const bool any = result.force_n.rows() > 0;
-  for (Eigen::Index c = 0; c < 3; ++c) {
-    peak.push_back(io::number(any ? result.force_n.col(c).cwiseAbs().maxCoeff() : 0.0));
-    mean.push_back(io::number(any ? result.force_n.col(c).mean() : 0.0));
-  }
-  json["vibrating_peak_n"] = peak;
-  json["vibrating_peak_force_n"] = io::number(result.vibrating_peak_force_n);
-  json["mean_force_n"] = mean;
-  json["samples"] = result.force_n.rows();
-  json["sample_rate_hz"] = io::number(result.sample_rate_hz);
-  json["steps_per_revolution"] = result.steps_per_revolution;
-  json["slices"] = result.slices;
-  json["error_estimate"] = io::number(result.error_estimate);
-  json["resolved"] = result.resolved;
-  json["diverged"] = result.diverged;
-  json["seconds"] = io::number(result.seconds);
-  return io::dump(json);
+  return io::dump(simulation_table().write(
+      {.simulation = &result, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .axial_depth_m = axial_depth_m}));
 }
 
 }  // namespace robomill::simulation

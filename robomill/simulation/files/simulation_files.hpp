@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "robomill/io/schema.hpp"
 #include "robomill/simulation/simulation.hpp"
 
 namespace robomill::simulation {
@@ -11,7 +12,15 @@ namespace robomill::simulation {
 /// @throws InvalidInput if the ending is another one, the place cannot be written, or a WAV's rate is no whole number
 void write_simulation(const std::filesystem::path& path, const Simulation& result);
 
+inline constexpr Name<Verdict> verdict_names[] = {
+    {"stable", Verdict::stable}, {"chatter", Verdict::chatter}, {"undecided", Verdict::undecided}};
+
 /// What the simulation found, without the columns.
+struct SimulationView {
+  const Simulation* simulation = nullptr;
+  double spindle_speed_rad_per_s = 0.0, axial_depth_m = 0.0;
+};
+[[nodiscard]] const io::Schema<SimulationView>& simulation_table();
 [[nodiscard]] std::string simulation_json(const Simulation& result, double spindle_speed_rad_per_s,
                                           double axial_depth_m);
 

@@ -1,4 +1,4 @@
-#include "robomill/stability/files/lobes_object.hpp"
+#include "robomill/stability/files/lobes_schema.hpp"
 
 #include <gtest/gtest.h>
 

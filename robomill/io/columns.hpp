@@ -1,0 +1,75 @@
+#pragma once
+// For .cpp files inside the library, as json.hpp.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
+
+namespace robomill::io {
+
+/// Adds a cell of a CSV: nothing for null, text in quotes, 9 significant digits of a number that is not whole.
+void append_cell(std::string& line, const Json& cell);
+
+/// A table whose rows are objects, column by column: a CSV, or an object with a list a key. A key that is absent of
+/// the first object is no column.
+template <class T>
+class Columns {
+ public:
+  explicit Columns(const Schema<T>& of) : of_(&of), info_(of.info()) {
+    for (Key& key : info_.keys) {
+      ++key.lists;
+      key.required = false;
+    }
+  }
+  [[nodiscard]] const TableInfo& info() const { return info_; }
+
+  [[nodiscard]] Json write(const std::vector<T>& lines) const {
+    Json out = Json::object();
+    for (const Row<T>* row : columns_of(lines)) {
+      Json& list = out[row->key.name] = Json::array();
+      for (const T& line : lines) list.push_back(of_->value(*row, line));
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::string csv(const std::vector<T>& lines) const {
+    const std::vector<const Row<T>*> rows = columns_of(lines);
+    std::string out;
+    for (const Row<T>* row : rows) out += (out.empty() ? "" : ",") + row->key.name;
+    out += '\n';
+    for (const T& line : lines) {
+      for (const Row<T>* row : rows) {
+        if (row != rows.front()) out += ',';
+        append_cell(out, of_->value(*row, line));
+      }
+      out += '\n';
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::vector<const Row<T>*> columns_of(const std::vector<T>& lines) const {
+    std::vector<const Row<T>*> out;
+    for (const Row<T>& row : of_->rows()) {
+      if (lines.empty() || !of_->value(row, lines.front()).is_discarded()) out.push_back(&row);
+    }
+    return out;
+  }
+  const Schema<T>* of_;
+  TableInfo info_;
+};
+
+/// A key that holds a table by its columns.
+/// @param lines  (const T&) -> std::vector<U>
+template <class F, class U>
+[[nodiscard]] auto columns_key(std::string name, F lines, const Columns<U>& columns, std::string meaning) {
+  using T = typename detail::Getter<F>::Object;
+  Row<T> row{
+      .key = {.name = std::move(name), .holds = Holds::table, .table = &columns.info(), .meaning = std::move(meaning)}};
+  row.write = [lines, &columns](const T& object, const Row<T>&) { return columns.write(lines(object)); };
+  return row;
+}
+
+}  // namespace robomill::io

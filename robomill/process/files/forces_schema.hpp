@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "robomill/io/columns.hpp"
+#include "robomill/process/forces.hpp"
+
+namespace robomill::process {
+
+/// What was cut with what, in words.
+struct Fact {
+  std::string label, value;
+};
+[[nodiscard]] const io::Schema<Fact>& fact_table();
+
+/// One block of a program in the documents of its forces.
+struct ForcesLine {
+  const ForcesResult* forces = nullptr;
+  const BlockResult* result = nullptr;
+  double path_m = 0.0, time_s = 0.0;  ///< of the program at its end
+  [[nodiscard]] const program::Block& block() const { return forces->program->program.blocks[result->force.block]; }
+};
+/// One a block.
+[[nodiscard]] std::vector<ForcesLine> lines_of(const ForcesResult& forces);
+/// forces.csv along a program.
+[[nodiscard]] const io::Columns<ForcesLine>& forces_columns();
+/// forces.json
+[[nodiscard]] const io::Schema<ForcesResult>& forces_table();
+
+}  // namespace robomill::process
