@@ -85,6 +85,14 @@ TEST_F(InitVerb, OverwritesNothing) {
   EXPECT_EQ(robomill("init poem").exit, 2);
 }
 
+TEST_F(InitVerb, SchemasArePrintedByTheirDocument) {
+  EXPECT_NE(robomill("schema").out.find("lobes.json\n"), std::string::npos);
+  EXPECT_NE(robomill("schema lobes.json").out.find("\"const\": \"lobes/1\""), std::string::npos);
+  const Ended unknown = robomill("schema poem.json");
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_NE(unknown.err.find("lobes.json"), std::string::npos) << unknown.err;
+}
+
 TEST_F(InitVerb, DashWritesTheDocumentAlone) {
   const Ended run = robomill("init job -o -");
   ASSERT_EQ(run.exit, 0) << run.err;

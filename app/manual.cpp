@@ -8,6 +8,7 @@
 #include "command_line.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/files/schemas.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::app {
@@ -170,6 +171,17 @@ std::string bash_completion() {
       "}}\n"
       "complete -o default -F _robomill robomill\n",
       below, first.substr(1), options, words);
+}
+
+Exit run_schema(const jobs::VerbJob& job, const Common& common, Progress&) {
+  std::string text;
+  if (job.inputs.empty()) {
+    for (const std::string& name : jobs::schema_names()) text += name + "\n";
+  } else {
+    text = jobs::schema_text(job.input().string());
+  }
+  write(common, text);
+  return done;
 }
 
 Exit run_completion(const jobs::VerbJob&, const Common& common, Progress&) {

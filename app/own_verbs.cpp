@@ -1,6 +1,7 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/jobs/files/schemas.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/verbs/new_option.hpp"
 #include "verbs.hpp"
@@ -93,6 +94,16 @@ Verb serve_verb() {
               whole_option("job_memory_mb", "that a job may have (default: half the machine's)", 100, 100'000'000)}};
 }
 
+Verb schema_verb() {
+  return {
+      .name = "schema",
+      .purpose = "the JSON Schema of a document; without a name the names of all",
+      .example = "schema lobes.json",
+      .readme = "robomill/jobs/README.md",
+      .input = word_option("document", "which document", {jobs::schema_names().begin(), jobs::schema_names().end()}),
+      .computes = false};
+}
+
 Verb completion_verb() {
   return {.name = "completion",
           .purpose = "a shell's completion of verbs, options and words",
@@ -115,7 +126,7 @@ Verb man_verb() {
 }  // namespace
 
 std::vector<jobs::Verb> own_verbs() {
-  return {init_verb(), monitor_verb(), serve_verb(), completion_verb(), man_verb()};
+  return {init_verb(), monitor_verb(), serve_verb(), schema_verb(), completion_verb(), man_verb()};
 }
 
 }  // namespace robomill::app

@@ -18,6 +18,7 @@ foreach(header IN LISTS headers)
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/robomill/robomill.hpp ${PROJECT_SOURCE_DIR}/robomill/version.hpp
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/robomill)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/robomill)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/robomill.pc @ONLY CONTENT
