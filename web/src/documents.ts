@@ -1,18 +1,17 @@
-// What robomill writes into the page: shop units, null for "none".
+// What robomill writes into the page: shop units, null for "none". Types of documents with a schema come from it.
+import type { LobesDocument } from '#schema/lobes';
 import type { CellDocument } from './cell_document';
 import type { Decision } from './decision';
 import type { BlocksDocument, Program, SmoothDocument } from './program_documents';
 import type { Monitor, MotionDocument } from './recorded';
 import type {
   Assumption,
-  ChartPoint,
   CoefficientsDocument,
   ComparisonDocument,
   ExplanationDocument,
   JointDocument,
   SimulationDocument,
   StiffnessDocument,
-  SurfaceDocument,
   SweepDocument,
   ToolsDocument,
   VibrationDocument,
@@ -21,6 +20,7 @@ import type {
 export * from './program_documents';
 export * from './recorded';
 export * from './verb_documents';
+export type { LobesDocument };
 export type Num = number | null;
 
 export interface Fact {
@@ -29,9 +29,11 @@ export interface Fact {
 }
 
 export type Verdict = 'stable' | 'borderline' | 'chatter';
-export type Kind = 'hopf' | 'flip' | 'fold';
+/** The limit at one speed. */
+export type LimitRow = LobesDocument['limit'][number];
+export type LobesPoint = LobesDocument['points'][number];
 /** The structure that a mode belongs to. */
-export type Owner = 'tool' | 'workpiece';
+export type Owner = NonNullable<LobesPoint['mode_of']>;
 
 /** Of the tip about its mean position. */
 export interface ForcedVibration {
@@ -162,28 +164,6 @@ export interface TipPeak {
   frequency_hz: number;
   receptance_m_per_n: Num;
   measured_frequency_hz: Num; // of the measured peak nearest to it
-}
-
-/** A row of lobes.json: a point where a cut begins to be unstable. */
-export interface BoundaryPoint {
-  spindle_speed_rpm: number;
-  axial_depth_mm: Num; // of a limit, null: none up to the deepest cut that was looked at
-  chatter_frequency_hz?: Num;
-  kind?: Kind;
-  mode?: Num;
-  mode_of?: Owner | null;
-}
-
-/** lobes.json */
-export interface LobesDocument {
-  spindle_speed_rpm: number[];
-  axial_depth_mm: number[]; // of the map; its last is the deepest cut that was looked at
-  spectral_radius?: Num[][]; // a row a depth
-  boundary: BoundaryPoint[];
-  limit: BoundaryPoint[];
-  points?: ChartPoint[]; // that were asked for
-  surface?: SurfaceDocument;
-  uncertainty?: { samples: number; spindle_speed_rpm: number[]; limit_5_percent_mm: Num[]; limit_95_percent_mm: Num[] };
 }
 
 /** A number for each of x, y and z. */

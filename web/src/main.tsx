@@ -1,23 +1,26 @@
 import { render } from 'preact';
-import type { Report } from './documents';
 import { Page } from './page';
+import { isConfig, requireReport } from './parse';
 import { drawAll, drawOnEvents } from './plot';
 import { App } from './serve/app';
-import type { ServeConfig } from './serve/documents';
 
 /** What stands in the page as data, by its id; null where it is not there. */
-function dataIn<T>(id: string): T | null {
-  const element = document.getElementById(id);
-  return element && (JSON.parse(element.textContent ?? 'null') as T);
+function dataIn(id: string): unknown {
+  return JSON.parse(document.getElementById(id)?.textContent ?? 'null');
+}
+
+function pageOf(report: unknown) {
+  requireReport(report);
+  return <Page report={report} />;
 }
 
 /** A report has its data in the page; the application that `robomill serve` answers with has a token instead, and asks. */
 async function start(): Promise<void> {
   const root = document.getElementById('page')!;
-  const config = dataIn<ServeConfig>('serve-config');
-  if (config) render(<App config={config} />, root);
-  else render(<Page report={dataIn<Report>('report-data')!} />, root);
-  const place = config ? '' : window.location.hash.slice(1);
+  const config = dataIn('serve-config');
+  const served = isConfig(config);
+  render(served ? <App config={config} /> : pageOf(dataIn('report-data')), root);
+  const place = served ? '' : window.location.hash.slice(1);
   if (place !== '') document.getElementById(place)?.scrollIntoView();
   drawOnEvents();
   await drawAll();
@@ -25,6 +28,6 @@ async function start(): Promise<void> {
 }
 
 start().catch((error: unknown) => {
-  document.getElementById('page')!.textContent = 'This page could not be shown.';
+  document.getElementById('page')!.textContent = `This page could not be shown. ${error instanceof Error ? error.message : ''}`;
   console.error(error);
 });

@@ -1,17 +1,16 @@
-// The page of the sample report, which the C++ side writes (web.page_sample): its words, without its plots.
-import { readFileSync } from 'node:fs';
+// The page of the sample report: its words, without its plots.
 import { renderToString } from 'preact-render-to-string';
 import { beforeEach, expect, it, vi } from 'vitest';
 import type { Report } from './documents';
 import { Page } from './page';
 import type { Decision } from './decision';
+import { sampleReport } from './report_sample';
 import { smoothedBy } from './smooth_views';
 
 vi.mock('plotly.js-cartesian-dist-min', () => ({}));
 
-const data = /<script type="application\/json" id="report-data">(.*?)<\/script>/s.exec(readFileSync('sample.html', 'utf8'))![1]!;
 let report: Report;
-beforeEach(() => void (report = JSON.parse(data) as Report));
+beforeEach(() => void (report = sampleReport()));
 
 function page(): string {
   return renderToString(<Page report={report} />);
@@ -309,7 +308,7 @@ it('says why the monitor could not tell, and nothing of the cut then', () => {
   Object.assign(report.monitor!, { alarms: [], alarm_count: 0, events: [], state_times: [{ state: 'blind', reason: 'no-signal', duration_s: 3.2 }] });
   expect(page()).toContain('<strong>Cannot tell</strong>: no usable signal, for 3.20 s.');
   expect(page()).not.toMatch(/no chatter|no alarm|<strong>stable/i);
-  report.monitor!.events = [{ ...(JSON.parse(data) as Report).monitor!.events[0]!, event: 'state', state: 'blind', reason: 'clipped' }];
+  report.monitor!.events = [{ ...sampleReport().monitor!.events[0]!, event: 'state', state: 'blind', reason: 'clipped' }];
   expect(page()).toContain('signal at the limit of its converter');
 });
 
@@ -448,7 +447,7 @@ it('has no column of grades or shares where a verb knows none', () => {
 
 it('keeps markup in texts as text', () => {
   const evil = '</script><img src=x onerror=alert(1)>';
-  report = JSON.parse(data, (_, value: unknown) => (typeof value === 'string' && /^[A-Za-z .]{12,}$/.test(value) ? evil : value)) as Report;
+  report = JSON.parse(JSON.stringify(report), (_, value: unknown) => (typeof value === 'string' && /^[A-Za-z .]{12,}$/.test(value) ? evil : value)) as Report;
   expect(page()).not.toContain('<img');
   expect(page()).toContain('&lt;img');
 });

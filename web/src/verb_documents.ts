@@ -1,6 +1,6 @@
 // What single verbs find, as robomill writes it into the page: shop units, null for "none".
 import type { Band } from './bands';
-import type { BoundaryPoint, Kind, Num, Owner } from './documents';
+import type { LobesDocument, LobesPoint, Num, Owner } from './documents';
 
 /** What was taken because nobody said it; key and file are null where nothing can be set. */
 export interface Assumption {
@@ -10,42 +10,24 @@ export interface Assumption {
   file: string | null;
 }
 
-/** A point of a chart that was asked for. */
-export interface ChartPoint {
-  spindle_speed_rpm: number;
-  axial_depth_mm?: Num; // in a sweep the parameter's value stands in its place
-  radial_depth_mm?: Num;
-  lead_deg?: Num;
-  tilt_deg?: Num;
-  spectral_radius: Num;
-  stable: boolean;
-  error_estimate: Num;
-  dominant_frequency_hz: Num; // of the motion that dies out most slowly or grows fastest
-  kind: Kind;
-  mode: Num;
-  mode_of: Owner | null;
-  limit_depth_mm?: Num; // null: none in the range
-  gain_margin?: Num; // of cuts in three directions; null: none up to 1,000
-}
-
-/** The error of the surface that stable cuts leave, a row a depth; null where a cut chatters. */
-export interface SurfaceDocument {
-  spindle_speed_rpm: number[];
-  axial_depth_mm: number[];
-  surface_location_error_um: Num[][];
-}
-
 export type SweptParameter = 'radial_depth' | 'lead' | 'tilt';
 
-/** lobes.json of a sweep: of the three lists of values there is that of its parameter. */
-export interface SweepDocument {
+/** Of a sweep: the one of its parameter. */
+interface Swept<Value> {
+  radial_depth_mm?: Value;
+  lead_deg?: Value;
+  tilt_deg?: Value;
+}
+
+/** A point that was asked for; in a sweep the parameter's value is there in place of the depth. */
+export type ChartPoint = Omit<LobesPoint, 'axial_depth_mm'> & Partial<Pick<LobesPoint, 'axial_depth_mm'>> & Swept<number>;
+
+/** lobes.json of a sweep. */
+export interface SweepDocument extends Swept<number[]> {
   sweep: SweptParameter;
   spindle_speed_rpm: number[];
-  radial_depth_mm?: number[];
-  lead_deg?: number[];
-  tilt_deg?: number[];
   spectral_radius: Num[][]; // a row a value
-  boundary: (BoundaryPoint & { radial_depth_mm?: Num; lead_deg?: Num; tilt_deg?: Num })[];
+  boundary: (Omit<LobesDocument['boundary'][number], 'axial_depth_mm'> & Swept<number>)[];
   stable: { spindle_speed_rpm: number; intervals: [number, number][] }[];
   points: ChartPoint[];
 }

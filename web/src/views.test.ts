@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { AssemblyDocument, FrfDocument, LobesDocument, ModesDocument, Plan, SegmentDocument } from './documents';
+import type { AssemblyDocument, FrfDocument, ModesDocument, Plan, SegmentDocument } from './documents';
+import { lobesSample } from './lobes_sample';
 import { assemblyOf, bandsOf, feedOf, frfsOf, lobesOf, modesOf, valueAt } from './views';
 
 const modes: ModesDocument = {
@@ -22,17 +23,11 @@ it('numbers the modes of each structure from one, with their share in the limit'
 });
 
 it('makes curves, band and map of lobes.json', () => {
-  const document: LobesDocument = {
-    spindle_speed_rpm: [1000, 2000],
-    axial_depth_mm: [0, 3],
-    boundary: [],
-    limit: [{ spindle_speed_rpm: 1000, axial_depth_mm: 1 }, { spindle_speed_rpm: 2000, axial_depth_mm: null }],
-  };
-  expect(lobesOf(document)).toMatchObject({ limit_mm: [1, null], searched_depth_mm: 3, band: null, map: null });
-  const uncertainty = { samples: 50, spindle_speed_rpm: [1000], limit_5_percent_mm: [0.9], limit_95_percent_mm: [null] };
-  const more = lobesOf({ ...document, spectral_radius: [[0, 0], [1, 2]], uncertainty });
-  expect(more.band).toEqual({ label: '5 to 95 % of 50 samples', spindle_speed_rpm: [1000], low_mm: [0.9], high_mm: [null] });
-  expect(more.map).toMatchObject({ axial_depth_mm: [0, 3], spectral_radius: [[0, 0], [1, 2]] });
+  const { spectral_radius, uncertainty, ...curves } = lobesSample;
+  expect(lobesOf(curves)).toMatchObject({ limit_mm: [0.5, 1.5, null], searched_depth_mm: 3, band: null, map: null });
+  const more = lobesOf(lobesSample);
+  expect(more.band).toEqual({ label: '5 to 95 % of 50 samples', spindle_speed_rpm: [4000, 8000], low_mm: [0.45, null], high_mm: [0.55, null] });
+  expect(more.map).toMatchObject({ axial_depth_mm: [0, 3], spectral_radius });
 });
 
 it('has limits at a speed only where one is recommended', () => {

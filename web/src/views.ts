@@ -1,5 +1,5 @@
 // What tables and plots need, made of the documents.
-import type { AssemblyDocument, BoundaryPoint, Forces, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
+import type { AssemblyDocument, Forces, FrfDocument, LimitRow, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
 
 export interface Mode {
   mode: number;
@@ -29,11 +29,14 @@ export interface Lobes {
   limit_mm: Num[]; // null: none up to searched_depth_mm
   searched_depth_mm: Num;
   band: { label: string; spindle_speed_rpm: number[]; low_mm: Num[]; high_mm: Num[] } | null;
-  boundary: BoundaryPoint[];
+  boundary: LimitRow[];
   map: { spindle_speed_rpm: number[]; axial_depth_mm: number[]; spectral_radius: Num[][] } | null;
 }
 
-export function lobesOf(document: LobesDocument): Lobes {
+/** What is drawn of lobes.json; while sliders move the limit is all that is known of the boundary. */
+type DrawnLobes = Pick<LobesDocument, 'spindle_speed_rpm' | 'axial_depth_mm' | 'spectral_radius' | 'limit' | 'uncertainty'> & Pick<Lobes, 'boundary'>;
+
+export function lobesOf(document: DrawnLobes): Lobes {
   const { spindle_speed_rpm: speed, axial_depth_mm: depth, spectral_radius: radius, boundary, limit, uncertainty } = document;
   return {
     label: 'all modes',

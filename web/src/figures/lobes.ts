@@ -1,4 +1,4 @@
-import type { BoundaryPoint, ChartPoint, Cut, DepthCurve, Num, Recommendation, SurfaceDocument, Verdict } from '../documents';
+import type { ChartPoint, Cut, DepthCurve, LimitRow, LobesDocument, Num, Recommendation, Verdict } from '../documents';
 import type { Lobes } from '../views';
 import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -205,7 +205,7 @@ const kinds = [
 
 /** Chatter frequency along the boundary, coloured by mode; only the points that are the limit at their speed are what occurs first. */
 export function frequencyTraces({ boundary }: Lobes, theme: Theme): Trace[] {
-  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; points: BoundaryPoint[] }>();
+  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; points: LimitRow[] }>();
   for (const point of boundary) {
     if (point.chatter_frequency_hz == null) continue;
     const mode = point.mode ?? 0;
@@ -374,7 +374,7 @@ export function mapFigure({ map }: Lobes, theme: Theme): Figure {
 }
 
 /** The error of the surface over speed and depth, where a cut is stable. */
-export function surfaceFigure(surface: SurfaceDocument, theme: Theme): Figure {
+export function surfaceFigure(surface: NonNullable<LobesDocument['surface']>, theme: Theme): Figure {
   const z = surface.surface_location_error_um;
   const most = z.flat().reduce<number>((largest, value) => Math.max(largest, Math.abs(value ?? 0)), 0) || 1;
   return {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { ComparisonDocument, ExplanationDocument, SimulationDocument, Slot, StiffnessDocument, SweepDocument, ToolRow, VibrationDocument } from '../documents';
+import { lobesSample, pointSample } from '../lobes_sample';
 import { displacementFigure, jointsFigure, slotResidualFigure, slotsFigure } from './identified';
 import { pointTraces, surfaceFigure } from './lobes';
 import { peaksFigure } from './peaks';
@@ -8,17 +9,7 @@ import { comparisonFigure, sweepFigure } from './sweep';
 import { dark, light } from './theme';
 import { toolsFigure } from './tools';
 
-const point = (stable: boolean, depth: number) => ({
-  spindle_speed_rpm: 5000,
-  axial_depth_mm: depth,
-  spectral_radius: stable ? 0.8 : 1.2,
-  stable,
-  error_estimate: 0,
-  dominant_frequency_hz: 500,
-  kind: 'hopf' as const,
-  mode: 1,
-  mode_of: 'tool' as const,
-});
+const point = (stable: boolean, depth: number) => ({ ...pointSample, spindle_speed_rpm: 5000, axial_depth_mm: depth, stable });
 
 describe('points that were asked for', () => {
   it('differ by symbol where they are stable', () => {
@@ -31,7 +22,7 @@ describe('points that were asked for', () => {
 
 describe('surface', () => {
   it('has zero in the middle of its scale', () => {
-    const figure = surfaceFigure({ spindle_speed_rpm: [1, 2], axial_depth_mm: [1], surface_location_error_um: [[-3, null]] }, light);
+    const figure = surfaceFigure(lobesSample.surface!, light);
     expect(figure.data[0]).toMatchObject({ zmin: -3, zmax: 3 });
   });
 });

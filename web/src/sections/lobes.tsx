@@ -1,5 +1,5 @@
 // Stability lobes, over speed, over feed direction, and of some modes alone.
-import type { Agreement, ChartPoint, Cut, LobesDocument, Num, Plan, SurfaceDocument, Verdict } from '../documents';
+import type { Agreement, ChartPoint, Cut, LobesDocument, Num, Plan, Verdict } from '../documents';
 import { lobesFigure, mapFigure, pairFigure, surfaceFigure } from '../figures/lobes';
 import { polarFigure } from '../figures/polar';
 import { Details, Section, someOf, Table, type Column } from '../parts';
@@ -92,7 +92,7 @@ export function PointsTable({ points, heading, valueOf }: PointsTableProps) {
   );
 }
 
-function Surface({ surface }: { surface: SurfaceDocument }) {
+function Surface({ surface }: Required<Pick<LobesDocument, 'surface'>>) {
   return (
     <Details summary="Error of the surface">
       <Plot

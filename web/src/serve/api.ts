@@ -1,6 +1,7 @@
 // The server's answers, one function a path.
 import type { CheckAnswer, Fault, FolderState, Inspection, Job, JobRequest, LobesAnswer, LobesRequest, ServeConfig, Tap, TapHitCurves, TapRequest, Value, Verb } from './documents';
 import type { Report } from '../documents';
+import { requireDocument, requireReport } from '../parse';
 import type { MonitorSession, MonitorSummary } from './monitor/documents';
 import { sayOutdated } from './outdated';
 import type { ProgramAnswer, ProgramRequest } from './program/documents';
@@ -102,8 +103,16 @@ export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: stri
     run: (request: JobRequest) => post<{ id: number }>('/api/jobs', request),
     job: async (id: number, signal?: AbortSignal) => wholeFault(await get<Job>(`/api/jobs/${id}`, signal)),
     cancel: (id: number) => ask('DELETE', `/api/jobs/${id}`),
-    report: (id: number, signal?: AbortSignal) => get<Report>(`/api/jobs/${id}/report`, signal),
-    lobes: (request: LobesRequest, signal?: AbortSignal) => post<LobesAnswer>('/api/lobes', request, signal),
+    async report(id: number, signal?: AbortSignal): Promise<Report> {
+      const report = await get<unknown>(`/api/jobs/${id}/report`, signal);
+      requireReport(report);
+      return report;
+    },
+    async lobes(request: LobesRequest, signal?: AbortSignal): Promise<LobesAnswer> {
+      const answer = await post<LobesAnswer>('/api/lobes', request, signal);
+      if (!('sweep' in answer.lobes)) requireDocument('lobes', answer.lobes);
+      return answer;
+    },
     program: (request: ProgramRequest, signal?: AbortSignal) => post<ProgramAnswer>('/api/program', request, signal),
     tap: async (signal?: AbortSignal) => wholeTap(await get<Tap | null>('/api/tap', signal)),
     startTap: async (request: TapRequest) => ({ state: wholeTap((await post<{ state: Tap }>('/api/tap', request)).state) }),

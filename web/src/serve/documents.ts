@@ -1,5 +1,5 @@
 // What page and server say to each other.
-import type { BoundaryPoint, FrfDocument, Kind, LobesDocument, Num, Owner, SweepDocument } from '../documents';
+import type { FrfDocument, LobesDocument, Num, SweepDocument } from '../documents';
 
 /** Stands in the page. */
 export interface ServeConfig {
@@ -130,23 +130,6 @@ export interface LobesRequest {
   sequence: number;
 }
 
-/** A point that was evaluated; of a sweep at the value of what is swept in place of a depth. */
-export interface EvaluatedPoint {
-  spindle_speed_rpm: number;
-  axial_depth_mm?: number;
-  radial_depth_mm?: number;
-  lead_deg?: number;
-  tilt_deg?: number;
-  limit_depth_mm?: Num; // at this speed; null: none up to the searched depth
-  margin?: Num; // 1 - depth/limit
-  spectral_radius: Num;
-  stable: boolean;
-  dominant_frequency_hz?: Num;
-  kind?: Kind;
-  mode?: Num;
-  mode_of?: Owner | null;
-}
-
 /** A key that a slider may move, in the file's unit. */
 export interface Movable {
   value: number;
@@ -162,13 +145,9 @@ export interface ListedMode {
   kept: boolean;
 }
 
-export type LiveLobes = Omit<LobesDocument, 'boundary' | 'points'> & { boundary?: BoundaryPoint[]; points?: EvaluatedPoint[] };
-/** Of a file that sweeps another parameter than the axial depth. */
-export type LiveSweep = Omit<SweepDocument, 'points'> & { points: EvaluatedPoint[] };
-
 export interface LobesAnswer {
   sequence: number;
-  lobes: LiveLobes | LiveSweep;
+  lobes: LobesDocument | SweepDocument;
   modes: ListedMode[];
   fields: Record<string, Movable>;
   notes: string[];

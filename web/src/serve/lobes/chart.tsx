@@ -2,11 +2,11 @@
 import { useCallback, useMemo, useRef, useState } from 'preact/hooks';
 import type { Theme } from '../../figures/theme';
 import { Plot } from '../../plot';
+import { sweptOf } from '../../verb_views';
 import { recordLatency } from '../latency';
 import { chartHeight, frameOf, fromPixels, liveFigure, liveSweepFigure, toPixels, type Frame } from './figure';
 import type { Curves } from './live';
 import { placed, stepOf, type Point, type Ranges } from './settings';
-import { parameterOf } from './swept';
 
 interface HandleProps {
   frame: Frame;
@@ -112,7 +112,7 @@ export function Chart({ curves, name, kept, point, ...handle }: ChartProps) {
         shows={
           sweep === null
             ? 'Stability lobes: limit depth over spindle speed, with the operating point'
-            : `Spectral radius over spindle speed and ${parameterOf(sweep).name.toLowerCase()}, with the operating point`
+            : `Spectral radius over spindle speed and ${sweptOf(sweep).name.toLowerCase()}, with the operating point`
         }
         caption={sweep === null ? `Below the line a cut is stable; ${drag}` : `Where the spectral radius is above 1, a vibration grows; the line is where it is 1. D${drag.slice(1)}`}
         draw={draw}

@@ -1,10 +1,11 @@
 // The lobes, or the map of a sweep, as a figure that keeps its place while it moves.
+import type { SweepDocument } from '../../documents';
 import { lobesFigure } from '../../figures/lobes';
 import { sweepFigure } from '../../figures/sweep';
 import { plain, type Figure, type Theme } from '../../figures/theme';
+import { sweptOf } from '../../verb_views';
 import type { Lobes } from '../../views';
-import type { LiveSweep } from '../documents';
-import { parameterOf, sweptRanges } from './swept';
+import { sweptRanges } from './swept';
 
 export interface LiveFigureInput {
   lobes: Lobes;
@@ -42,8 +43,8 @@ export function liveFigure({ lobes, name, kept, moving }: LiveFigureInput, theme
 }
 
 export interface LiveSweepInput {
-  sweep: LiveSweep;
-  kept: { sweep: LiveSweep; name: string } | null; // whose line is overlaid
+  sweep: SweepDocument;
+  kept: { sweep: SweepDocument; name: string } | null; // whose line is overlaid
 }
 
 /** The spectral radius over speed and what is swept. Its axes do not follow the values, so that the point keeps its place. */
@@ -57,7 +58,7 @@ export function liveSweepFigure({ sweep, kept }: LiveSweepInput, theme: Theme, h
       type: 'contour',
       name: plain(`kept: ${kept.name}`),
       x: kept.sweep.spindle_speed_rpm,
-      y: parameterOf(kept.sweep).values,
+      y: sweptOf(kept.sweep).values,
       z: kept.sweep.spectral_radius,
       contours: { start: 1, end: 1, size: 1, coloring: 'none' },
       line: { color: theme.overlay, width: 2, dash: 'dash' },

@@ -1,19 +1,13 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
-import type { LiveLobes, LiveSweep, LobesAnswer } from '../documents';
+import type { SweepDocument } from '../../documents';
+import { lobesSample } from '../../lobes_sample';
+import type { LobesAnswer } from '../documents';
 import { recordLatency } from '../latency';
 import { curvesOf } from './live';
 
-const lobes: LiveLobes = {
-  spindle_speed_rpm: [4000, 6000],
-  axial_depth_mm: [0, 3],
-  limit: [
-    { spindle_speed_rpm: 4000, axial_depth_mm: 0.5, chatter_frequency_hz: 540, kind: 'hopf', mode: 1 },
-    { spindle_speed_rpm: 6000, axial_depth_mm: null },
-  ],
-};
 const answer: LobesAnswer = {
   sequence: 3,
-  lobes,
+  lobes: { ...lobesSample, boundary: [] },
   modes: [],
   fields: {},
   notes: [],
@@ -25,20 +19,19 @@ describe('an answer', () => {
   it('of the limit alone has it as the boundary', () => {
     const curves = curvesOf(answer, { settings, answer: 'limit', started: 7 });
     expect(curves).toMatchObject({ whole: false, started: 7, settings });
-    expect(curves.lobes.limit_mm).toEqual([0.5, null]);
-    expect(curves.lobes.boundary).toEqual([lobes.limit[0]]);
+    expect(curves.lobes.limit_mm).toEqual([0.5, 1.5, null]);
+    expect(curves.lobes.boundary).toEqual(lobesSample.limit.slice(0, 2));
     expect(curves.lobes.searched_depth_mm).toBe(3);
   });
   it('of the chart has its own', () => {
-    const boundary = [{ spindle_speed_rpm: 4000, axial_depth_mm: 0.6, chatter_frequency_hz: 541, mode: 2 }];
-    const curves = curvesOf({ ...answer, lobes: { ...lobes, boundary } }, { settings, answer: 'chart', started: null });
+    const curves = curvesOf({ ...answer, lobes: lobesSample }, { settings, answer: 'chart', started: null });
     expect(curves.whole).toBe(true);
-    expect(curves.lobes.boundary).toEqual(boundary);
+    expect(curves.lobes.boundary).toEqual(lobesSample.boundary);
   });
 });
 
 it('of a sweep has its map in place of curves', () => {
-  const sweep: LiveSweep = { sweep: 'lead', spindle_speed_rpm: [4000, 6000], lead_deg: [-10, 10], spectral_radius: [[0.9, 1.1], [0.8, 0.9]], boundary: [], stable: [], points: [] };
+  const sweep: SweepDocument = { sweep: 'lead', spindle_speed_rpm: [4000, 6000], lead_deg: [-10, 10], spectral_radius: [[0.9, 1.1], [0.8, 0.9]], boundary: [], stable: [], points: [] };
   const curves = curvesOf({ ...answer, lobes: sweep }, { settings, answer: 'limit', started: null });
   expect(curves.sweep).toBe(sweep);
   expect(curves.lobes.limit_mm).toEqual([]);

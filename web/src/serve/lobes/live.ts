@@ -1,8 +1,9 @@
 // Curves that follow the sliders: asks while they move, and for all when they rest.
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
+import type { ChartPoint, LimitRow, SweepDocument } from '../../documents';
 import { lobesOf, type Lobes } from '../../views';
 import { asApiError, type Api, type ApiError } from '../api';
-import type { EvaluatedPoint, LiveLobes, LiveSweep, LobesAnswer, LobesRequest } from '../documents';
+import type { LobesAnswer, LobesRequest } from '../documents';
 import { Latest } from '../latest';
 import { firstPoint, keysOf, pointsOf, sameCurves, type Evaluated, type FileValues, type Point, type Settings } from './settings';
 import { firstSweptPoint } from './swept';
@@ -18,8 +19,8 @@ interface Question {
 /** What was answered: the limit over the speed, or the map of another parameter that the file sweeps. */
 export interface Curves {
   lobes: Lobes; // empty of a sweep
-  limit: LiveLobes['limit'];
-  sweep: LiveSweep | null;
+  limit: LimitRow[];
+  sweep: SweepDocument | null;
   settings: Settings; // that it belongs to
   whole: boolean; // with boundary and band
   started: number | null;
@@ -27,7 +28,7 @@ export interface Curves {
 
 export interface Live {
   curves: Curves | null;
-  points: EvaluatedPoint[]; // of the settings as they are
+  points: ChartPoint[]; // of the settings as they are
   answer: LobesAnswer | null; // the last
   settings: Settings;
   file: FileValues | null; // known with the first answer
@@ -38,21 +39,16 @@ export interface Live {
   wrote: (file: FileValues) => void; // the file says this now
 }
 
-function isSweep(lobes: LobesAnswer['lobes']): lobes is LiveSweep {
-  return 'sweep' in lobes;
-}
-
-/** The answer as the figures need it; while the hand moves the limit is all that is known of the boundary. */
+/** The answer as the figures need it. */
 export function curvesOf({ lobes }: LobesAnswer, { settings, answer, started }: Question): Curves {
   const rest = { settings, whole: answer === 'chart', started };
-  if (isSweep(lobes)) {
+  if ('sweep' in lobes) {
     const none = { spindle_speed_rpm: lobes.spindle_speed_rpm, axial_depth_mm: [], boundary: [], limit: [] };
     return { lobes: lobesOf(none), limit: [], sweep: lobes, ...rest };
   }
-  const { points: _, ...curve } = lobes;
-  const found = curve.limit.filter((row) => row.axial_depth_mm !== null);
-  const boundary = curve.boundary && curve.boundary.length > 0 ? curve.boundary : found;
-  return { lobes: lobesOf({ ...curve, boundary }), limit: curve.limit, sweep: null, ...rest };
+  const found = lobes.limit.filter((row) => row.axial_depth_mm !== null);
+  const boundary = lobes.boundary.length > 0 ? lobes.boundary : found;
+  return { lobes: lobesOf({ ...lobes, boundary }), limit: lobes.limit, sweep: null, ...rest };
 }
 
 function firstPointOf({ lobes, sweep }: Curves): Point {
@@ -83,7 +79,7 @@ export function useLive(api: Api, path: string): Live {
   const answered = (got: LobesAnswer, question: Question) => {
     setError(null);
     setAnswer(got);
-    setEvaluated({ points: got.lobes.points ?? [], settings: question.settings });
+    setEvaluated({ points: got.lobes.points, settings: question.settings });
     const before = now.current.curves;
     const keep = before !== null && question.answer === 'limit' && sameCurves(before.settings, question.settings);
     if (!keep) {

@@ -1,16 +1,17 @@
 // Lobes that answer while a slider moves.
 import { useEffect, useState } from 'preact/hooks';
+import type { SweepDocument } from '../../documents';
 import { Bullets } from '../../parts';
 import { fixed, percent, significant } from '../../text';
+import { sweptOf } from '../../verb_views';
 import { useServe } from '../context';
-import type { LiveSweep } from '../documents';
 import { nameOf } from '../files/fields';
 import { ErrorBox, Button, View } from '../pieces';
 import { href } from '../route';
 import { Chart } from './chart';
 import { useLive, type Curves, type Live } from './live';
 import { changesOf, differences, modesIn, pointFacts, rangesOf, resolved, stepOf, valueOf, type FileValues, type Point, type PointFacts, type Ranges, type Settings } from './settings';
-import { parameterOf, sweptFacts, sweptKey, sweptRanges, type SweptFacts } from './swept';
+import { sweptFacts, sweptKey, sweptRanges, type SweptFacts } from './swept';
 import { ModeSwitches, Slider } from './sliders';
 import { WriteBack } from './write_back';
 
@@ -65,8 +66,8 @@ export function PointPanel({ point: [speed, depth], facts }: { point: Point; fac
 }
 
 /** The same in a sweep. */
-export function SweptPanel({ point: [speed, value], facts, sweep }: { point: Point; facts: SweptFacts; sweep: LiveSweep }) {
-  const { name, unit } = parameterOf(sweep);
+export function SweptPanel({ point: [speed, value], facts, sweep }: { point: Point; facts: SweptFacts; sweep: SweepDocument }) {
+  const { name, unit } = sweptOf(sweep);
   const entries: [string, string][] = [
     ['Spindle speed', `${fixed(speed, 0)} rpm`],
     [name, `${significant(value)} ${unit}`],
@@ -173,7 +174,7 @@ function Moving({ live, curves, file, point, path }: { live: Live; curves: Curve
           kept={kept && { curves: kept, name: keptName }}
           point={point}
           ranges={rangesIn(curves)}
-          says={`${fixed(point[0], 0)} rpm, ${significant(point[1])} ${sweep ? parameterOf(sweep).unit : 'mm'}, ${swept ? (swept.stable ? 'stable' : 'chatter') : pointText(facts)}`}
+          says={`${fixed(point[0], 0)} rpm, ${significant(point[1])} ${sweep ? sweptOf(sweep).unit : 'mm'}, ${swept ? (swept.stable ? 'stable' : 'chatter') : pointText(facts)}`}
           move={([speed, depth], started) => live.move({ point: [locks.has(speedKey) ? point[0] : speed, locks.has(depthKey) ? point[1] : depth] }, started)}
           rest={live.rest}
         />

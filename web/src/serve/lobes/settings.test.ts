@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { Lobes } from '../../views';
+import { lobesSample, pointSample } from '../../lobes_sample';
+import { lobesOf } from '../../views';
 import { changesOf, differences, firstPoint, keysOf, placed, pointFacts, pointsOf, resolved, sameCurves, stepOf, type FileValues, type Settings } from './settings';
 
 const file: FileValues = {
@@ -45,20 +46,9 @@ describe('settings', () => {
   });
 });
 
-const lobes: Lobes = {
-  label: '',
-  spindle_speed_rpm: [4000, 6000, 8000],
-  limit_mm: [0.5, 1.5, null],
-  searched_depth_mm: 3,
-  band: null,
-  boundary: [],
-  map: null,
-};
-const limit = [
-  { spindle_speed_rpm: 4000, axial_depth_mm: 0.5, chatter_frequency_hz: 540, mode: 2, mode_of: 'tool' as const },
-  { spindle_speed_rpm: 6000, axial_depth_mm: 1.5, chatter_frequency_hz: 922, mode: 3, mode_of: 'workpiece' as const },
-  { spindle_speed_rpm: 8000, axial_depth_mm: null },
-];
+const lobes = lobesOf(lobesSample);
+const { limit } = lobesSample;
+const stable = { ...pointSample, stable: true, spectral_radius: 0.9 };
 
 describe('operating point', () => {
   it('has a margin to the limit at its speed', () => {
@@ -66,12 +56,12 @@ describe('operating point', () => {
     expect(facts).toMatchObject({ stable: true, evaluated: false, limit_mm: 1, margin: 0.75, frequency_hz: 540, mode: 'mode 2' });
   });
   it('believes what was evaluated there', () => {
-    const here = { spindle_speed_rpm: 5800, axial_depth_mm: 1.2, spectral_radius: 1.02, stable: false, dominant_frequency_hz: 918, mode: 3, mode_of: 'tool' as const };
+    const here = pointSample;
     expect(pointFacts([5800, 1.2], lobes, limit, [here])).toMatchObject({ stable: false, evaluated: true, frequency_hz: 918, mode: 'mode 3' });
     expect(pointFacts([5801, 1.2], lobes, limit, [here])).toMatchObject({ stable: true, evaluated: false, frequency_hz: 922, mode: 'mode 3 of the workpiece' });
   });
   it('has nothing evaluated of other settings', () => {
-    const here = { spindle_speed_rpm: 6000, axial_depth_mm: 0.5, spectral_radius: 0.9, stable: true, limit_depth_mm: 2.4, margin: 0.79 };
+    const here = { ...stable, spindle_speed_rpm: 6000, axial_depth_mm: 0.5, limit_depth_mm: 2.4, margin: 0.79 };
     const evaluated = { points: [here], settings: as_in_file };
     expect(pointsOf(null, as_in_file)).toEqual([]);
     expect(pointsOf(evaluated, as_in_file)).toEqual([here]);
@@ -82,7 +72,7 @@ describe('operating point', () => {
     expect(pointFacts([6000, 0.5], lobes, limit, pointsOf(evaluated, slid))).toMatchObject({ evaluated: false, limit_mm: 1.5 });
   });
   it('takes the limit that was found at that speed', () => {
-    const here = { spindle_speed_rpm: 5800, axial_depth_mm: 1.2, spectral_radius: 0.9, stable: true, limit_depth_mm: 2.4, margin: 0.5 };
+    const here = { ...stable, limit_depth_mm: 2.4, margin: 0.5 };
     expect(pointFacts([5800, 1.2], lobes, limit, [here])).toMatchObject({ evaluated: true, limit_mm: 2.4, margin: 0.5 });
     const none = { ...here, limit_depth_mm: null, margin: null };
     expect(pointFacts([5800, 1.2], lobes, limit, [none])).toMatchObject({ stable: true, limit_mm: null, margin: null });

@@ -1,8 +1,8 @@
 // What the sliders say, what of it differs from the file or from a kept curve, and what is known of the operating point.
-import type { Num } from '../../documents';
+import type { ChartPoint, LimitRow, Num } from '../../documents';
 import { general } from '../../text';
 import { valueAt, type Lobes } from '../../views';
-import type { EvaluatedPoint, LiveLobes, Movable, Value } from '../documents';
+import type { Movable, Value } from '../documents';
 import { nameOf } from '../files/fields';
 
 export type Point = [spindle_speed_rpm: number, axial_depth_mm: number];
@@ -51,12 +51,12 @@ function sorted(settings: Settings): [string, Value][] {
 
 /** Points with the settings that they were evaluated with. */
 export interface Evaluated {
-  points: EvaluatedPoint[];
+  points: ChartPoint[];
   settings: Settings;
 }
 
 /** Those that hold with the settings as they are; of others none. */
-export function pointsOf(evaluated: Evaluated | null, settings: Settings): EvaluatedPoint[] {
+export function pointsOf(evaluated: Evaluated | null, settings: Settings): ChartPoint[] {
   return evaluated !== null && sameCurves(evaluated.settings, settings) ? evaluated.points : [];
 }
 
@@ -135,19 +135,17 @@ export interface PointFacts {
   mode: string;
 }
 
-type Row = LiveLobes['limit'][number];
-
-export function modeText(row: Pick<Row, 'mode' | 'mode_of'> | undefined): string {
+export function modeText(row: Pick<LimitRow, 'mode' | 'mode_of'> | undefined): string {
   if (row?.mode == null) return '';
   return `mode ${row.mode}${row.mode_of === 'workpiece' ? ' of the workpiece' : ''}`;
 }
 
-function nearest(rows: Row[], speed: number): Row | undefined {
-  const away = (row: Row) => Math.abs(row.spindle_speed_rpm - speed);
-  return rows.filter((row) => row.axial_depth_mm !== null && row.chatter_frequency_hz != null).reduce<Row | undefined>((best, row) => (best && away(best) <= away(row) ? best : row), undefined);
+function nearest(rows: LimitRow[], speed: number): LimitRow | undefined {
+  const away = (row: LimitRow) => Math.abs(row.spindle_speed_rpm - speed);
+  return rows.filter((row) => row.axial_depth_mm !== null && row.chatter_frequency_hz != null).reduce<LimitRow | undefined>((best, row) => (best && away(best) <= away(row) ? best : row), undefined);
 }
 
-export function pointFacts([speed, depth]: Point, lobes: Lobes, limit: Row[], points: EvaluatedPoint[]): PointFacts {
+export function pointFacts([speed, depth]: Point, lobes: Lobes, limit: LimitRow[], points: ChartPoint[]): PointFacts {
   const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(point.axial_depth_mm, depth));
   const limit_mm = here?.limit_depth_mm === undefined ? valueAt(lobes.spindle_speed_rpm, lobes.limit_mm, speed) : here.limit_depth_mm;
   const stable = here?.stable ?? (limit_mm === null || depth < limit_mm);

@@ -1,14 +1,15 @@
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
+import type { ChartPoint, SweepDocument } from '../../documents';
 import { light } from '../../figures/theme';
-import type { LiveSweep } from '../documents';
+import { pointSample } from '../../lobes_sample';
 import { resetAll, SweptPanel } from './lobes';
 import { liveSweepFigure } from './figure';
 import { firstSweptPoint, sweptFacts, sweptKey, sweptRanges } from './swept';
 
 vi.mock('plotly.js-cartesian-dist-min', () => ({}));
 
-const sweep: LiveSweep = {
+const sweep: SweepDocument = {
   sweep: 'lead',
   spindle_speed_rpm: [4000, 6000, 8000],
   lead_deg: [-10, 0, 10],
@@ -36,7 +37,7 @@ describe('a sweep', () => {
   });
   it('knows the operating point by the nearest of its map, or as it was evaluated', () => {
     expect(sweptFacts([5900, 1], sweep, [])).toEqual({ stable: false, evaluated: false, spectral_radius: 1.05, intervals: '2 to 10', frequency_hz: null, mode: '' });
-    const here = { spindle_speed_rpm: 5900, lead_deg: 1, spectral_radius: 1.02, stable: false, dominant_frequency_hz: 918, mode: 3, mode_of: 'tool' as const };
+    const here: ChartPoint = { ...pointSample, spindle_speed_rpm: 5900, lead_deg: 1 };
     expect(sweptFacts([5900, 1], sweep, [here])).toMatchObject({ stable: false, evaluated: true, spectral_radius: 1.02, frequency_hz: 918, mode: 'mode 3' });
     expect(sweptFacts([5900, 2], sweep, [here])).toMatchObject({ evaluated: false });
   });

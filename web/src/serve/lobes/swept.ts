@@ -1,26 +1,20 @@
 // A sweep that follows the sliders: its ranges, and what is known of the operating point in it.
-import type { Num } from '../../documents';
+import type { ChartPoint, Num, SweepDocument } from '../../documents';
 import { intervalsText, sweptOf } from '../../verb_views';
-import type { EvaluatedPoint, LiveSweep } from '../documents';
 import { isHere, modeText, placed, type Point, type Ranges } from './settings';
 
-/** Name, unit and values of what is swept. */
-export function parameterOf(sweep: LiveSweep) {
-  return sweptOf({ ...sweep, points: [] });
-}
-
 /** The key of its slider, as others are named. */
-export function sweptKey({ sweep }: LiveSweep): string {
+export function sweptKey({ sweep }: SweepDocument): string {
   return `operating_point.${sweep === 'radial_depth' ? 'radial_depth_mm' : `${sweep}_deg`}`;
 }
 
-export function sweptRanges(sweep: LiveSweep): Ranges {
+export function sweptRanges(sweep: SweepDocument): Ranges {
   const ends = (list: number[]): [number, number] => [list[0] ?? 0, list[list.length - 1] ?? 1];
-  return { speed: ends(sweep.spindle_speed_rpm), depth: ends(parameterOf(sweep).values) };
+  return { speed: ends(sweep.spindle_speed_rpm), depth: ends(sweptOf(sweep).values) };
 }
 
 /** In the middle of both. */
-export function firstSweptPoint(sweep: LiveSweep): Point {
+export function firstSweptPoint(sweep: SweepDocument): Point {
   const ranges = sweptRanges(sweep);
   const middle = ([low, high]: [number, number]) => (low + high) / 2;
   return placed([middle(ranges.speed), middle(ranges.depth)], ranges);
@@ -39,14 +33,11 @@ function nearestIn(list: number[], value: number): number {
   return list.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(list[best]! - value) ? i : best), 0);
 }
 
-function valueIn({ sweep }: LiveSweep, point: EvaluatedPoint): number | undefined {
-  return sweep === 'radial_depth' ? point.radial_depth_mm : sweep === 'lead' ? point.lead_deg : point.tilt_deg;
-}
-
-export function sweptFacts([speed, value]: Point, sweep: LiveSweep, points: EvaluatedPoint[]): SweptFacts {
-  const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(valueIn(sweep, point), value));
+export function sweptFacts([speed, value]: Point, sweep: SweepDocument, points: ChartPoint[]): SweptFacts {
+  const { values, valueOf } = sweptOf(sweep);
+  const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(valueOf(point), value));
   const column = nearestIn(sweep.spindle_speed_rpm, speed);
-  const row = nearestIn(parameterOf(sweep).values, value);
+  const row = nearestIn(values, value);
   const radius = here ? here.spectral_radius : (sweep.spectral_radius[row]?.[column] ?? null);
   const stable = here?.stable ?? (radius !== null && radius < 1);
   return {

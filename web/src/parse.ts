@@ -1,0 +1,33 @@
+// Where data becomes documents: one that has a schema names itself, as "lobes/1", and is read by that name alone.
+import { versions, type Documents } from '#schema/documents';
+import type { Report } from './documents';
+import type { ServeConfig } from './serve/documents';
+
+function isObject(value: unknown): value is object {
+  return typeof value === 'object' && value !== null;
+}
+
+/** What the application has in place of a report. */
+export function isConfig(data: unknown): data is ServeConfig {
+  return isObject(data) && 'token' in data;
+}
+
+function requireVersion(version: string, value: unknown): void {
+  const own = isObject(value) && 'document' in value ? `is ${String(value.document)}` : 'does not name itself';
+  if (own !== `is ${version}`) throw new Error(`This page reads ${version}, but the data ${own}.`);
+}
+
+/** @throws Error where it is another document, or of another version than this page reads */
+export function requireDocument<Name extends keyof Documents>(name: Name, value: unknown): asserts value is Documents[Name] {
+  requireVersion(versions[name], value);
+}
+
+/** The documents of a report stand under their names; null: it has none. @throws Error as requireDocument */
+export function requireReport(data: unknown): asserts data is Report {
+  if (!isObject(data) || !('title' in data)) throw new Error('The data is no report.');
+  const parts = new Map<string, unknown>(Object.entries(data));
+  for (const [name, version] of Object.entries(versions)) {
+    const part = parts.get(name) ?? null;
+    if (part !== null) requireVersion(version, part);
+  }
+}

@@ -1,0 +1,42 @@
+/// <reference types="vite/types/importMeta.d.ts" />
+// Every sample of a document, in files *_sample.ts and in the sample report, fits the schema of the document that it names.
+import { Ajv2020 } from 'ajv/dist/2020';
+import { readFileSync } from 'node:fs';
+import { describe, expect, it } from 'vitest';
+import { versions } from '#schema/documents';
+import { lobesSample } from './lobes_sample';
+import { sampleReport } from './report_sample';
+
+const ajv = new Ajv2020({ allErrors: true, allowUnionTypes: true });
+const schemas = new Map(
+  Object.entries(versions).map(([name, version]) => [version, ajv.compile(JSON.parse(readFileSync(`schema/${name}.json.schema.json`, 'utf8')))]),
+);
+
+function named(value: unknown): value is { document: (typeof versions)[keyof typeof versions] } {
+  return typeof value === 'object' && value !== null && 'document' in value;
+}
+
+const files = import.meta.glob<Record<string, unknown>>('./**/*_sample.ts', { eager: true });
+const samples = [...Object.values(files), { ...sampleReport() }].flatMap((values) => Object.entries(values).map(([name, value]) => ({ name, value }))).filter(({ value }) => named(value));
+
+/** What does not fit the schema. */
+function faults(value: unknown): string[] {
+  const fits = named(value) && schemas.get(value.document);
+  if (!fits) return ['names no known document'];
+  return fits(value) ? [] : fits.errors!.map(({ instancePath, message }) => `${instancePath} ${message}`);
+}
+
+describe('samples', () => {
+  it.each(samples)('$name fits', ({ value }) => expect(faults(value)).toEqual([]));
+  it('are there of every document', () => {
+    expect(new Set(samples.map(({ value }) => named(value) && value.document))).toEqual(new Set(Object.values(versions)));
+  });
+  it('that do not fit are found', () => {
+    const { seconds: _, ...without } = lobesSample;
+    const limit = lobesSample.limit.map((row) => ({ ...row, kind: 'other' }));
+    expect(faults({ ...lobesSample, limit })).toContain('/limit/0/kind must be equal to one of the allowed values');
+    expect(faults({ ...lobesSample, extra: 1 })).toEqual([' must NOT have additional properties']);
+    expect(faults(without)).toEqual([" must have required property 'seconds'"]);
+    expect(faults({ ...lobesSample, document: 'lobes/0' })).toEqual(['names no known document']);
+  });
+});
