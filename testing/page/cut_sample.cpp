@@ -105,7 +105,10 @@ Json bands(double size, double growth) {
 }  // namespace
 
 std::string sample_sweep() {
-  Json json = {{"sweep", "radial_depth"}, {"spindle_speed_rpm", Json::array()}, {"radial_depth_mm", Json::array()}};
+  Json json = {{"document", "sweep/1"},
+               {"sweep", "radial_depth"},
+               {"spindle_speed_rpm", Json::array()},
+               {"radial_depth_mm", Json::array()}};
   json["spectral_radius"] = Json::array();
   json["boundary"] = Json::array();
   json["stable"] = Json::array();
@@ -130,17 +133,19 @@ std::string sample_sweep() {
   }
   json["points"] = Json::array({point(8000.0, 1.0), point(9200.0, 3.0)});
   json["method"] = "collocation";
+  json["period"] = "tooth";
+  for (const char* count : {"evaluations", "unsettled", "uncertain", "seconds"}) json[count] = 0;
   return json.dump();
 }
 
 std::string sample_comparison(const std::string& text) {
-  Json json = {{"spindle_speed_rpm", Json::array()}, {"methods", Json::array()}};
+  Json json = {{"document", "comparison/1"}, {"spindle_speed_rpm", Json::array()}, {"methods", Json::array()}};
   struct Row {
     const char* method;
     double factor, seconds;
   };
   constexpr std::array<Row, 3> rows = {
-      {{"collocation", 1.0, 2.31}, {"semi-discretization", 1.004, 0.84}, {"zero-order", 1.06, 0.01}}};
+      {{"collocation", 1.0, 2.31}, {"semi-discretization", 1.004, 0.84}, {"zeroth-order", 1.06, 0.01}}};
   for (int i = 0; i <= 60; ++i) json["spindle_speed_rpm"].push_back(4000.0 + 200.0 * i);
   for (const Row& row : rows) {
     Json limits = Json::array();

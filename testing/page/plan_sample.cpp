@@ -169,7 +169,9 @@ std::string sample_lobes() {
       row["kind"] = i % 40 == 0 ? "flip" : "hopf";
       row["mode"] = mode_at(chatter_hz);
       row["mode_of"] = "tool";
+      row["error_estimate"] = 1e-6;
       boundary.push_back(row);
+      boundary.back()["curve"] = 0;
     }
     limit.push_back(std::move(row));
   }
@@ -183,16 +185,30 @@ std::string sample_lobes() {
     }
     map.push_back(std::move(row));
   }
-  const Json lobes = {{"spindle_speed_rpm", numbers(all.rpm)},
+  const auto size = [](const Eigen::VectorXd& values) { return static_cast<std::size_t>(values.size()); };
+  const Json share(size(map_mm), Json(size(all.rpm), 0.5));
+  const Json lobes = {{"document", "lobes/1"},
+                      {"spindle_speed_rpm", numbers(all.rpm)},
                       {"axial_depth_mm", numbers(map_mm)},
                       {"spectral_radius", std::move(map)},
                       {"boundary", std::move(boundary)},
                       {"limit", std::move(limit)},
+                      {"points", Json::array()},
+                      {"method", "collocation"},
+                      {"period", "tooth"},
+                      {"evaluations", 0},
+                      {"unsettled", 0},
+                      {"uncertain", 0},
+                      {"seconds", 0.0},
                       {"uncertainty",
                        {{"samples", 200},
                         {"spindle_speed_rpm", numbers(all.rpm)},
+                        {"axial_depth_mm", numbers(map_mm)},
                         {"limit_5_percent_mm", numbers(0.9 * all.limit_mm)},
-                        {"limit_95_percent_mm", numbers(1.15 * all.limit_mm)}}}};
+                        {"limit_50_percent_mm", numbers(all.limit_mm)},
+                        {"limit_95_percent_mm", numbers(1.15 * all.limit_mm)},
+                        {"chatter_probability", share},
+                        {"seconds", 0.0}}}};
   return lobes.dump();
 }
 

@@ -1,5 +1,7 @@
 // What robomill writes into the page: shop units, null for "none". Types of documents with a schema come from it.
+import type { ComparisonDocument } from '#schema/comparison';
 import type { LobesDocument } from '#schema/lobes';
+import type { SweepDocument } from '#schema/sweep';
 import type { CellDocument } from './cell_document';
 import type { Decision } from './decision';
 import type { BlocksDocument, Program, SmoothDocument } from './program_documents';
@@ -7,12 +9,10 @@ import type { Monitor, MotionDocument } from './recorded';
 import type {
   Assumption,
   CoefficientsDocument,
-  ComparisonDocument,
   ExplanationDocument,
   JointDocument,
   SimulationDocument,
   StiffnessDocument,
-  SweepDocument,
   ToolsDocument,
   VibrationDocument,
 } from './verb_documents';
@@ -20,7 +20,7 @@ import type {
 export * from './program_documents';
 export * from './recorded';
 export * from './verb_documents';
-export type { LobesDocument };
+export type { ComparisonDocument, LobesDocument, SweepDocument };
 export type Num = number | null;
 
 export interface Fact {
@@ -32,6 +32,8 @@ export type Verdict = 'stable' | 'borderline' | 'chatter';
 /** The limit at one speed. */
 export type LimitRow = LobesDocument['limit'][number];
 export type LobesPoint = LobesDocument['points'][number];
+/** A point that was asked for; in a sweep the parameter's value is there in place of the depth. */
+export type ChartPoint = SweepDocument['points'][number] & Partial<Pick<LobesPoint, 'axial_depth_mm'>>;
 /** The structure that a mode belongs to. */
 export type Owner = NonNullable<LobesPoint['mode_of']>;
 

@@ -1,5 +1,5 @@
-// A lobes.json with all of its parts, for tests.
-import type { LobesDocument, LobesPoint } from './documents';
+// lobes.json with all of its parts, of a sweep and of methods, for tests.
+import type { ComparisonDocument, LobesDocument, LobesPoint, SweepDocument } from './documents';
 
 const limit: LobesDocument['limit'] = [
   { spindle_speed_rpm: 4000, axial_depth_mm: 0.5, chatter_frequency_hz: 540, kind: 'hopf', mode: 2, mode_of: 'tool', error_estimate: 1e-6 },
@@ -24,6 +24,8 @@ export const pointSample: LobesPoint = {
   margin: -0.043,
 };
 
+const effort = { method: 'collocation', period: 'tooth', evaluations: 120, unsettled: 0, uncertain: 1, seconds: 0.2 } as const;
+
 export const lobesSample: LobesDocument = {
   document: 'lobes/1',
   spindle_speed_rpm: [4000, 6000, 8000],
@@ -35,12 +37,7 @@ export const lobesSample: LobesDocument = {
   ],
   limit,
   points: [pointSample],
-  method: 'collocation',
-  period: 'tooth',
-  evaluations: 120,
-  unsettled: 0,
-  uncertain: 1,
-  seconds: 0.2,
+  ...effort,
   uncertainty: {
     samples: 50,
     spindle_speed_rpm: [4000, 8000],
@@ -52,4 +49,36 @@ export const lobesSample: LobesDocument = {
     seconds: 0.4,
   },
   surface: { spindle_speed_rpm: [4000, 6000], axial_depth_mm: [1], surface_location_error_um: [[-3, null]], peak_to_peak_um: [[8, null]] },
+};
+
+const { axial_depth_mm: _, limit_depth_mm: __, margin: ___, ...swept } = pointSample;
+
+export const sweepSample: SweepDocument = {
+  document: 'sweep/1',
+  sweep: 'lead',
+  spindle_speed_rpm: [4000, 6000, 8000],
+  lead_deg: [-10, 0, 10],
+  spectral_radius: [
+    [1.2, 1.1, 1.3],
+    [0.9, 1.05, 0.8],
+    [0.7, 0.8, 0.6],
+  ],
+  boundary: [],
+  stable: [
+    { spindle_speed_rpm: 4000, intervals: [[-3, 10]] },
+    { spindle_speed_rpm: 6000, intervals: [[2, 10]] },
+    { spindle_speed_rpm: 8000, intervals: [] },
+  ],
+  points: [{ ...swept, spindle_speed_rpm: 5900, lead_deg: 1 }],
+  ...effort,
+};
+
+export const comparisonSample: ComparisonDocument = {
+  document: 'comparison/1',
+  spindle_speed_rpm: [4000, 6000],
+  methods: [
+    { method: 'collocation', limit_mm: [0.5, null], median_error: 0, worst_error: 0, differ: 0, rejection: '', seconds: 1 },
+    { method: 'zeroth-order', limit_mm: [], median_error: null, worst_error: null, differ: 0, rejection: 'a ball end', seconds: 0 },
+    { method: 'multi-frequency', limit_mm: [0.55, 1.5], median_error: 0.1, worst_error: 0.1, differ: 1, rejection: '', seconds: 2 },
+  ],
 };

@@ -12,14 +12,14 @@ export function isConfig(data: unknown): data is ServeConfig {
   return isObject(data) && 'token' in data;
 }
 
-function requireVersion(version: string, value: unknown): void {
+function requireName(read: string[], value: unknown): void {
   const own = isObject(value) && 'document' in value ? `is ${String(value.document)}` : 'does not name itself';
-  if (own !== `is ${version}`) throw new Error(`This page reads ${version}, but the data ${own}.`);
+  if (!read.some((name) => own === `is ${name}`)) throw new Error(`This page reads ${read.join(' or ')}, but the data ${own}.`);
 }
 
-/** @throws Error where it is another document, or of another version than this page reads */
-export function requireDocument<Name extends keyof Documents>(name: Name, value: unknown): asserts value is Documents[Name] {
-  requireVersion(versions[name], value);
+/** One of these documents. @throws Error where it is another, or of another version than this page reads */
+export function requireDocument<Name extends keyof Documents>(names: Name[], value: unknown): asserts value is Documents[Name] {
+  requireName(names.map((name) => versions[name]), value);
 }
 
 /** The documents of a report stand under their names; null: it has none. @throws Error as requireDocument */
@@ -28,6 +28,6 @@ export function requireReport(data: unknown): asserts data is Report {
   const parts = new Map<string, unknown>(Object.entries(data));
   for (const [name, version] of Object.entries(versions)) {
     const part = parts.get(name) ?? null;
-    if (part !== null) requireVersion(version, part);
+    if (part !== null) requireName([version], part);
   }
 }

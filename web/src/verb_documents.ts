@@ -1,6 +1,6 @@
 // What single verbs find, as robomill writes it into the page: shop units, null for "none".
 import type { Band } from './bands';
-import type { LobesDocument, LobesPoint, Num, Owner } from './documents';
+import type { Num, Owner } from './documents';
 
 /** What was taken because nobody said it; key and file are null where nothing can be set. */
 export interface Assumption {
@@ -8,42 +8,6 @@ export interface Assumption {
   taken: string;
   key: string | null;
   file: string | null;
-}
-
-export type SweptParameter = 'radial_depth' | 'lead' | 'tilt';
-
-/** Of a sweep: the one of its parameter. */
-interface Swept<Value> {
-  radial_depth_mm?: Value;
-  lead_deg?: Value;
-  tilt_deg?: Value;
-}
-
-/** A point that was asked for; in a sweep the parameter's value is there in place of the depth. */
-export type ChartPoint = Omit<LobesPoint, 'axial_depth_mm'> & Partial<Pick<LobesPoint, 'axial_depth_mm'>> & Swept<number>;
-
-/** lobes.json of a sweep. */
-export interface SweepDocument extends Swept<number[]> {
-  sweep: SweptParameter;
-  spindle_speed_rpm: number[];
-  spectral_radius: Num[][]; // a row a value
-  boundary: (Omit<LobesDocument['boundary'][number], 'axial_depth_mm'> & Swept<number>)[];
-  stable: { spindle_speed_rpm: number; intervals: [number, number][] }[];
-  points: ChartPoint[];
-}
-
-/** lobes.json of methods compared: the first is what the others are compared with. */
-export interface ComparisonDocument {
-  spindle_speed_rpm: number[];
-  methods: {
-    method: string;
-    limit_mm: Num[]; // null: none up to the deepest cut; empty: the method rejects the cut
-    median_error: Num;
-    worst_error: Num;
-    differ: number;
-    rejection: string; // why it rejects the cut
-    seconds: Num;
-  }[];
 }
 
 export type PeakKind = 'tooth passing' | 'rotation' | 'chatter' | 'cut or chatter' | 'unexplained';

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { ExplainedPeak, Reading, Slot, SweepDocument } from './documents';
+import type { ExplainedPeak, Reading, Slot } from './documents';
+import { sweepSample } from './lobes_sample';
 import { coefficientRows, intervalsText, jointRows, reachOf, readingText, slotGroups, sweptOf } from './verb_views';
 
 const chatter: Reading = {
@@ -37,9 +38,9 @@ describe('readings', () => {
 
 describe('sweep', () => {
   it('knows what it varies', () => {
-    const sweep = { sweep: 'lead', lead_deg: [0, 5] } as SweepDocument;
-    expect(sweptOf(sweep)).toMatchObject({ name: 'Lead', unit: '°', values: [0, 5] });
-    expect(sweptOf(sweep).valueOf({ lead_deg: 5 } as never)).toBe(5);
+    const sweep = sweepSample;
+    expect(sweptOf(sweep)).toMatchObject({ name: 'Lead', unit: '°', values: [-10, 0, 10] });
+    expect(sweptOf(sweep).valueOf(sweep.points[0]!)).toBe(1);
     expect(sweptOf({ ...sweep, sweep: 'radial_depth', radial_depth_mm: [1] })).toMatchObject({ name: 'Radial depth', unit: 'mm', values: [1] });
   });
   it('writes intervals', () => {

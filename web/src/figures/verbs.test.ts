@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { ComparisonDocument, ExplanationDocument, SimulationDocument, Slot, StiffnessDocument, SweepDocument, ToolRow, VibrationDocument } from '../documents';
-import { lobesSample, pointSample } from '../lobes_sample';
+import type { ExplanationDocument, SimulationDocument, Slot, StiffnessDocument, ToolRow, VibrationDocument } from '../documents';
+import { comparisonSample, lobesSample, pointSample, sweepSample } from '../lobes_sample';
 import { displacementFigure, jointsFigure, slotResidualFigure, slotsFigure } from './identified';
 import { pointTraces, surfaceFigure } from './lobes';
 import { peaksFigure } from './peaks';
@@ -28,20 +28,18 @@ describe('surface', () => {
 });
 
 describe('sweep', () => {
-  const sweep: SweepDocument = { sweep: 'tilt', spindle_speed_rpm: [4000, 5000], tilt_deg: [0, 5], spectral_radius: [[0.8, 0.9], [1.1, 0.9]], boundary: [], stable: [], points: [{ ...point(true, 1), tilt_deg: 2 }] };
   it('is a map over its own parameter, with its points', () => {
-    const { data, layout } = sweepFigure(sweep, dark);
+    const { data, layout } = sweepFigure(sweepSample, dark);
     expect(data.map((trace) => trace['type'])).toEqual(['heatmap', 'contour', 'scatter']);
-    expect(data[2]).toMatchObject({ x: [5000], y: [2] });
-    expect(layout['yaxis']).toMatchObject({ title: { text: 'Tilt (°)' } });
+    expect(data[2]).toMatchObject({ x: [5900], y: [1] });
+    expect(layout['yaxis']).toMatchObject({ title: { text: 'Lead (°)' } });
   });
 });
 
 describe('methods', () => {
-  const row = (method: string, limit_mm: (number | null)[]): ComparisonDocument['methods'][number] => ({ method, limit_mm, median_error: 0, worst_error: 0, differ: 0, rejection: limit_mm.length > 0 ? '' : 'no', seconds: 1 });
   it('are a line each, without those that reject the cut', () => {
-    const { data } = comparisonFigure({ spindle_speed_rpm: [1, 2], methods: [row('a<b>', [1, null]), row('b', []), row('c', [1, 2])] }, light);
-    expect(data.map((trace) => trace['name'])).toEqual(['a&lt;b&gt;', 'c']);
+    const { data } = comparisonFigure(comparisonSample, light);
+    expect(data.map((trace) => trace['name'])).toEqual(['collocation', 'multi-frequency']);
     expect(new Set(data.map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(2);
   });
 });

@@ -110,7 +110,7 @@ export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: stri
     },
     async lobes(request: LobesRequest, signal?: AbortSignal): Promise<LobesAnswer> {
       const answer = await post<LobesAnswer>('/api/lobes', request, signal);
-      if (!('sweep' in answer.lobes)) requireDocument('lobes', answer.lobes);
+      requireDocument(['lobes', 'sweep'], answer.lobes);
       return answer;
     },
     program: (request: ProgramRequest, signal?: AbortSignal) => post<ProgramAnswer>('/api/program', request, signal),

@@ -1,6 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
-import type { SweepDocument } from '../../documents';
-import { lobesSample } from '../../lobes_sample';
+import { lobesSample, sweepSample } from '../../lobes_sample';
 import type { LobesAnswer } from '../documents';
 import { recordLatency } from '../latency';
 import { curvesOf } from './live';
@@ -31,9 +30,8 @@ describe('an answer', () => {
 });
 
 it('of a sweep has its map in place of curves', () => {
-  const sweep: SweepDocument = { sweep: 'lead', spindle_speed_rpm: [4000, 6000], lead_deg: [-10, 10], spectral_radius: [[0.9, 1.1], [0.8, 0.9]], boundary: [], stable: [], points: [] };
-  const curves = curvesOf({ ...answer, lobes: sweep }, { settings, answer: 'limit', started: null });
-  expect(curves.sweep).toBe(sweep);
+  const curves = curvesOf({ ...answer, lobes: sweepSample }, { settings, answer: 'limit', started: null });
+  expect(curves.sweep).toBe(sweepSample);
   expect(curves.lobes.limit_mm).toEqual([]);
   expect(curvesOf(answer, { settings, answer: 'limit', started: null }).sweep).toBeNull();
 });

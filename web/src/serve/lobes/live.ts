@@ -42,7 +42,7 @@ export interface Live {
 /** The answer as the figures need it. */
 export function curvesOf({ lobes }: LobesAnswer, { settings, answer, started }: Question): Curves {
   const rest = { settings, whole: answer === 'chart', started };
-  if ('sweep' in lobes) {
+  if (lobes.document === 'sweep/1') {
     const none = { spindle_speed_rpm: lobes.spindle_speed_rpm, axial_depth_mm: [], boundary: [], limit: [] };
     return { lobes: lobesOf(none), limit: [], sweep: lobes, ...rest };
   }

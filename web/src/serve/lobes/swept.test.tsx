@@ -1,31 +1,14 @@
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
-import type { ChartPoint, SweepDocument } from '../../documents';
 import { light } from '../../figures/theme';
-import { pointSample } from '../../lobes_sample';
+import { sweepSample } from '../../lobes_sample';
 import { resetAll, SweptPanel } from './lobes';
 import { liveSweepFigure } from './figure';
 import { firstSweptPoint, sweptFacts, sweptKey, sweptRanges } from './swept';
 
 vi.mock('plotly.js-cartesian-dist-min', () => ({}));
 
-const sweep: SweepDocument = {
-  sweep: 'lead',
-  spindle_speed_rpm: [4000, 6000, 8000],
-  lead_deg: [-10, 0, 10],
-  spectral_radius: [
-    [1.2, 1.1, 1.3],
-    [0.9, 1.05, 0.8],
-    [0.7, 0.8, 0.6],
-  ],
-  boundary: [],
-  stable: [
-    { spindle_speed_rpm: 4000, intervals: [[-3, 10]] },
-    { spindle_speed_rpm: 6000, intervals: [[2, 10]] },
-    { spindle_speed_rpm: 8000, intervals: [] },
-  ],
-  points: [],
-};
+const sweep = sweepSample;
 
 describe('a sweep', () => {
   it('has a slider of its own, over the values of the map', () => {
@@ -37,7 +20,7 @@ describe('a sweep', () => {
   });
   it('knows the operating point by the nearest of its map, or as it was evaluated', () => {
     expect(sweptFacts([5900, 1], sweep, [])).toEqual({ stable: false, evaluated: false, spectral_radius: 1.05, intervals: '2 to 10', frequency_hz: null, mode: '' });
-    const here: ChartPoint = { ...pointSample, spindle_speed_rpm: 5900, lead_deg: 1 };
+    const here = sweep.points[0]!;
     expect(sweptFacts([5900, 1], sweep, [here])).toMatchObject({ stable: false, evaluated: true, spectral_radius: 1.02, frequency_hz: 918, mode: 'mode 3' });
     expect(sweptFacts([5900, 2], sweep, [here])).toMatchObject({ evaluated: false });
   });
