@@ -10,7 +10,6 @@
 
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/page/json.hpp"
-#include "robomill/page/path_columns.hpp"
 #include "robomill/page/thin.hpp"
 
 namespace robomill::page {
@@ -179,6 +178,12 @@ bool says_something(const Json& column) {
   return std::ranges::any_of(column, [](const Json& cell) { return !cell.is_null(); });
 }
 
+/// Of blocks.json all but the joints ("q1") and which blocks share an evaluation.
+bool shown_of_blocks(std::string_view column) {
+  const bool joint = column.starts_with('q') && column.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  return !joint && column != "evaluation";
+}
+
 /// Of blocks.json the columns that the page shows and that say something; of a long program the blocks at which one of
 /// them has an extreme.
 /// @throws Json::exception if the columns are no lists or have different lengths
@@ -187,11 +192,10 @@ void thin_path(Json& json) {
   Json& all = json.at("blocks");
   const std::size_t rows = all.at("block").size();
   Json drawn = Json::object();
-  for (const char* name : path_columns) {
-    const auto column = all.find(name);
-    if (column == all.end()) continue;
-    if (!column->is_array() || column->size() != rows) throw Json::other_error::create(501, name, nullptr);
-    if (says_something(*column)) drawn[name] = std::move(*column);
+  for (auto& [name, column] : all.items()) {
+    if (!shown_of_blocks(name)) continue;
+    if (!column.is_array() || column.size() != rows) throw Json::other_error::create(501, name, nullptr);
+    if (says_something(column)) drawn[name] = std::move(column);
   }
   std::vector<Eigen::VectorXd> curves;
   for (const Json& column : drawn) {

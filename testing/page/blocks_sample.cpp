@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "robomill/page/path_columns.hpp"
-
 namespace robomill::page {
 namespace {
 
@@ -31,9 +29,7 @@ struct Where {
 /// Every column by its name; of a block in air those of its place alone.
 class Columns {
  public:
-  explicit Columns(std::string text) : text_(std::move(text)) {
-    for (const char* column : path_columns) json_[column] = Json::array();
-  }
+  explicit Columns(std::string text) : text_(std::move(text)) {}
   void add(const Where& at, bool cuts) {
     Json row = {{"block", rows_ + 1},
                 {"line", rows_ + line_of_first_block},
@@ -41,8 +37,14 @@ class Columns {
                 {"y_mm", at.y_mm},
                 {"z_mm", at.z_mm}};
     if (cuts) add_cut(row, at);
-    for (const char* column : path_columns) json_[column].push_back(row.contains(column) ? row[column] : Json());
+    for (const auto& [column, value] : row.items()) {
+      if (!json_.contains(column)) json_[column] = Json(rows_, Json());
+      json_[column].push_back(value);
+    }
     ++rows_;
+    for (Json& column : json_) {
+      if (column.size() < rows_) column.push_back(nullptr);
+    }
     cutting_ += cuts ? 1 : 0;
   }
   [[nodiscard]] Json document() const {
@@ -85,6 +87,7 @@ class Columns {
     row["power_w"] = 0.10472 * spindle_speed_rpm * torque_n_m;
     row["deflection_um"] = 1.1 * force_n * (1.0 + 0.004 * at.x_mm);
     row["surface_error_um"] = 0.4 * force_n;
+    if (at.y_mm > 0.0) row["surface_left_um"] = 0.3 * force_n;
     row["condition_number"] = 6.0 + 0.03 * at.y_mm;
     row["measured_nearby"] = at.x_mm < 0.4 * width_mm;
     if (!text_.empty()) row["note"] = text_;
@@ -92,7 +95,8 @@ class Columns {
   }
   std::string text_;
   Json json_ = Json::object();
-  int rows_ = 0, cutting_ = 0, unstable_ = 0;
+  std::size_t rows_ = 0;
+  int cutting_ = 0, unstable_ = 0;
 };
 
 /// The limit over one coordinate of the pose, around one block; none at its far end.

@@ -19,6 +19,8 @@ const columns: BlockColumns = {
   regime: [null, 'regenerative', 'mode-coupling', 'none'],
   lower_bound: [null, false, true, false],
   peak_f_n: [null, 40, 90, 10],
+  surface_error_um: [null, 12, null, -8],
+  surface_left_um: [null, 9, null, null],
   measured_nearby: [null, true, false, true],
   note: [null, null, '<b>far</b>', null],
 };
@@ -32,7 +34,7 @@ describe('a path', () => {
     expect(ends[9]).toBeNaN();
   });
   it('is coloured by what some block has', () => {
-    expect(quantitiesOf(columns).map(({ key }) => key)).toEqual(['stability_margin', 'limit_depth_mm', 'regime', 'peak_f_n']);
+    expect(quantitiesOf(columns).map(({ key }) => key)).toEqual(['stability_margin', 'limit_depth_mm', 'regime', 'peak_f_n', 'surface_error_um', 'surface_left_um']);
     expect(quantitiesOf({ ...columns, peak_f_n: [null, null, null, null] }).map(({ key }) => key)).not.toContain('peak_f_n');
   });
   it('shows the worst in the colour that stands out, whichever end that is', () => {
@@ -76,6 +78,10 @@ describe('a block', () => {
     expect(values(2)).toMatchObject({ Verdict: 'unstable', Regime: 'mode coupling', Note: '<b>far</b>', Dynamics: 'far from every measured posture' });
     expect(values(2)['Limit (5\u00a0–\u00a095\u00a0%)']).toMatch(/^0\.7 \(0\.6.*0\.8\).*a lower bound$/);
     expect(values(1)['Torque']).toBeUndefined();
+  });
+  it('says the error that its pass leaves, and what of it remains on the finished surface', () => {
+    expect(values(1)).toMatchObject({ 'Surface error': '12\u202fµm', 'Error of the finished surface': '9\u202fµm' });
+    expect(values(3)['Error of the finished surface']).toBeUndefined();
   });
   it('without a limit says so', () => {
     expect(limitOf(columns, 3)).toMatch(/^none found \(1\.9.*none\)$/);

@@ -6,7 +6,7 @@ import { dash, fixed, significant } from './text';
 
 type NumberColumn = { [K in keyof BlockColumns]-?: Num[] extends NonNullable<BlockColumns[K]> ? K : never }[keyof BlockColumns];
 
-/** Something that the path can be coloured by. */
+/** A value of blocks that is shown of each, and that the path can be coloured by. */
 export interface Quantity {
   key: NumberColumn | 'regime';
   name: string;
@@ -14,11 +14,15 @@ export interface Quantity {
   worse: 'low' | 'high';
 }
 
-const all: Quantity[] = [
+type NumberQuantity = Quantity & { key: NumberColumn };
+
+const margins: NumberQuantity[] = [
   { key: 'stability_margin', name: 'Stability margin', unit: '', worse: 'low' },
   { key: 'gain_margin', name: 'Gain margin', unit: '', worse: 'low' },
-  { key: 'limit_depth_mm', name: 'Limit depth', unit: 'mm', worse: 'low' },
-  { key: 'regime', name: 'Regime', unit: '', worse: 'high' },
+];
+
+/** What the cut does to robot, tool and part. */
+const loads: NumberQuantity[] = [
   { key: 'peak_f_n', name: 'Peak force', unit: 'N', worse: 'high' },
   { key: 'torque_n_m', name: 'Torque', unit: 'N·m', worse: 'high' },
   { key: 'power_w', name: 'Power', unit: 'W', worse: 'high' },
@@ -26,8 +30,16 @@ const all: Quantity[] = [
   { key: 'joint_torque_share', name: 'Joint load, share of the drive', unit: '', worse: 'high' },
   { key: 'cut_joint_torque_n_m', name: 'Joint load of the cut', unit: 'N·m', worse: 'high' },
   { key: 'surface_error_um', name: 'Surface error', unit: 'µm', worse: 'high' },
+  { key: 'surface_left_um', name: 'Error of the finished surface', unit: 'µm', worse: 'high' },
   { key: 'vibration_um', name: 'Forced vibration', unit: 'µm', worse: 'high' },
   { key: 'condition_number', name: 'Condition number', unit: '', worse: 'high' },
+];
+
+const all: Quantity[] = [
+  ...margins,
+  { key: 'limit_depth_mm', name: 'Limit depth', unit: 'mm', worse: 'low' },
+  { key: 'regime', name: 'Regime', unit: '', worse: 'high' },
+  ...loads,
 ];
 
 /** Those of which some block has a value. */
@@ -121,8 +133,8 @@ export function coloursOf(columns: BlockColumns, quantity: Quantity, theme: Them
   const none = parsed(theme.unknown);
   const { key, worse } = quantity;
   if (key === 'regime') {
-    const known = new Map(regimes.map(({ regime, colour }) => [regime, parsed(colour(theme))]));
-    for (let i = 0; i < count; ++i) blocks.set(known.get(columns.regime?.[i] ?? ('' as Regime)) ?? none, 3 * i);
+    const known = new Map<Regime | null, number[]>(regimes.map(({ regime, colour }) => [regime, parsed(colour(theme))]));
+    for (let i = 0; i < count; ++i) blocks.set(known.get(columns.regime?.[i] ?? null) ?? none, 3 * i);
   } else {
     const values = columns[key] ?? [];
     const range = rangeOf(values);
@@ -179,6 +191,7 @@ export function regimeName(columns: BlockColumns, index: number): string {
 /** What is known of a block. */
 export function blockFacts(columns: BlockColumns, index: number): Fact[] {
   const at = (key: NumberColumn, unit: string) => withUnit(numberAt(columns[key], index), unit);
+  const shown = ({ key, name, unit }: NumberQuantity): Fact => ({ label: name, value: at(key, unit) });
   const place: Fact[] = [
     { label: 'Block', value: fixed(columns.block[index]!, 0) },
     { label: 'Line', value: fixed(columns.line[index] ?? null, 0) },
@@ -193,21 +206,13 @@ export function blockFacts(columns: BlockColumns, index: number): Fact[] {
     { label: '|μ|', value: at('spectral_radius', '') },
     { label: 'Axial, radial depth', value: `${at('axial_depth_mm', '')}, ${at('radial_depth_mm', 'mm')}` },
     { label: 'Limit (5\u00a0–\u00a095\u00a0%)', value: `${limitOf(columns, index)}${thinSpace}mm${bound}` },
-    { label: 'Stability margin', value: at('stability_margin', '') },
-    { label: 'Gain margin', value: at('gain_margin', '') },
+    ...margins.map(shown),
     { label: 'Chatter frequency', value: at('chatter_frequency_hz', 'Hz') },
     { label: 'Mode', value: columns.mode?.[index] ?? dash },
     { label: 'Regime', value: regimeName(columns, index) },
     { label: 'Speed', value: at('spindle_speed_rpm', 'rpm') },
     { label: 'Feed', value: at('feed_mm_per_min', 'mm/min') },
-    { label: 'Peak force', value: at('peak_f_n', 'N') },
-    { label: 'Torque', value: at('torque_n_m', 'N·m') },
-    { label: 'Power', value: at('power_w', 'W') },
-    { label: 'Deflection', value: at('deflection_um', 'µm') },
-    { label: 'Joint load, share of the drive', value: at('joint_torque_share', '') },
-    { label: 'Joint load of the cut', value: at('cut_joint_torque_n_m', 'N·m') },
-    { label: 'Surface error', value: at('surface_error_um', 'µm') },
-    { label: 'Condition number', value: at('condition_number', '') },
+    ...loads.map(shown),
   ];
   if (columns.measured_nearby?.[index] === false) said.push({ label: 'Dynamics', value: 'far from every measured posture' });
   return [...place, ...facts.filter(({ value }) => value !== dash), ...said];

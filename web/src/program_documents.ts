@@ -74,6 +74,7 @@ export interface BlockColumns {
   joint_torque_share?: Num[];
   cut_joint_torque_n_m?: Num[];
   surface_error_um?: Num[];
+  surface_left_um?: Num[]; // on the finished surface alone
   vibration_um?: Num[];
   condition_number?: Num[];
   measured_nearby?: (boolean | null)[];
