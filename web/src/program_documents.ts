@@ -104,7 +104,7 @@ export interface NearestToLimit {
 }
 
 /** A limit by its name: max_velocity_mm_per_s, limit_velocity_mm_per_s (null: none), and velocity. */
-export type Limited<Name extends string, Suffix extends string = ''> = Record<`max_${Name}${Suffix}` | `limit_${Name}${Suffix}`, Num> & Record<Name, NearestToLimit>;
+type Limited<Name extends string, Suffix extends string = ''> = Record<`max_${Name}${Suffix}` | `limit_${Name}${Suffix}`, Num> & Record<Name, NearestToLimit>;
 
 type LimitedTool<Unit extends string> = Limited<'error', `_${Unit}`> &
   Limited<'velocity', `_${Unit}_per_s`> &

@@ -1,5 +1,5 @@
 // What tables and plots of a smoothed program need, made of smooth.json.
-import type { Fact, Limited, NearestToLimit, Num, SmoothDocument, SmoothedBy, SmoothedJoint } from './documents';
+import type { Fact, NearestToLimit, Num, SmoothDocument, SmoothedBy, SmoothedJoint } from './documents';
 import { general, percent, significant } from './text';
 
 /** The method asked for, then those beside it. */
@@ -61,27 +61,19 @@ function shareOf(max: Num, limit: Num): Num {
   return max === null || limit === null ? null : max / limit;
 }
 
-function limitUse<Name extends string, Suffix extends string>(
-  what: string,
-  of: Limited<Name, Suffix>,
-  name: Name,
-  suffix: Suffix,
-  unit: string,
-  factor = 1,
-): LimitUse {
-  const values = of as Record<string, Num>;
-  const max = scaled(values[`max_${name}${suffix}`]!, factor);
-  const limit = scaled(values[`limit_${name}${suffix}`]!, factor);
-  return { what, unit, max, limit, share: shareOf(max, limit), ...(of[name] as NearestToLimit) };
+function limitUse(what: string, most: Num, allowed: Num, nearest: NearestToLimit, unit: string, factor = 1): LimitUse {
+  const max = scaled(most, factor);
+  const limit = scaled(allowed, factor);
+  return { what, unit, max, limit, share: shareOf(max, limit), ...nearest };
 }
 
 function jointUses(joint: SmoothedJoint, index: number): LimitUse[] {
   const [unit, factor] = jointUnit(joint);
   const name = `joint ${index + 1}`;
   const uses = [
-    limitUse(`${name}, velocity`, joint, 'velocity', '', `${unit}/s`, factor),
-    limitUse(`${name}, acceleration`, joint, 'acceleration', '', `${unit}/s²`, factor),
-    limitUse(`${name}, jerk`, joint, 'jerk', '', `${unit}/s³`, factor),
+    limitUse(`${name}, velocity`, joint.max_velocity, joint.limit_velocity, joint.velocity, `${unit}/s`, factor),
+    limitUse(`${name}, acceleration`, joint.max_acceleration, joint.limit_acceleration, joint.acceleration, `${unit}/s²`, factor),
+    limitUse(`${name}, jerk`, joint.max_jerk, joint.limit_jerk, joint.jerk, `${unit}/s³`, factor),
   ];
   if (joint.position.violations === 0) return uses;
   return [{ what: `${name}, beyond its range`, unit, max: scaled(joint.beyond_position, factor), limit: null, share: null, ...joint.position }, ...uses];
@@ -91,20 +83,20 @@ function jointUses(joint: SmoothedJoint, index: number): LimitUse[] {
 export function limitUses(method: SmoothedBy): LimitUse[] {
   const { tip, axis, joints, faulty_samples: faulty } = method;
   const others = [
-    limitUse('joints, their pose beside the tip', method, 'pose_error', '_mm', 'mm'),
-    limitUse('dwells, cut short by', method, 'dwell_error', '_s', 's'),
+    limitUse('joints, their pose beside the tip', method.max_pose_error_mm, method.limit_pose_error_mm, method.pose_error, 'mm'),
+    limitUse('dwells, cut short by', method.max_dwell_error_s, method.limit_dwell_error_s, method.dwell_error, 's'),
     { what: 'samples, faulty', unit: '', max: null, limit: null, share: null, violations: faulty, at_s: null, block: null },
   ];
   return [
-    limitUse('tip, distance to the program', tip, 'error', '_mm', 'mm'),
-    limitUse('axis, angle to the program', axis, 'error', '_deg', '°'),
-    limitUse('tip, speed over the programmed', tip, 'share_of_feed', '', ''),
-    limitUse('tip, speed', tip, 'velocity', '_mm_per_s', 'mm/s'),
-    limitUse('tip, acceleration', tip, 'acceleration', '_mm_per_s2', 'mm/s²'),
-    limitUse('tip, jerk', tip, 'jerk', '_mm_per_s3', 'mm/s³'),
-    limitUse('axis, speed', axis, 'velocity', '_deg_per_s', '°/s'),
-    limitUse('axis, acceleration', axis, 'acceleration', '_deg_per_s2', '°/s²'),
-    limitUse('axis, jerk', axis, 'jerk', '_deg_per_s3', '°/s³'),
+    limitUse('tip, distance to the program', tip.max_error_mm, tip.limit_error_mm, tip.error, 'mm'),
+    limitUse('axis, angle to the program', axis.max_error_deg, axis.limit_error_deg, axis.error, '°'),
+    limitUse('tip, speed over the programmed', tip.max_share_of_feed, tip.limit_share_of_feed, tip.share_of_feed, ''),
+    limitUse('tip, speed', tip.max_velocity_mm_per_s, tip.limit_velocity_mm_per_s, tip.velocity, 'mm/s'),
+    limitUse('tip, acceleration', tip.max_acceleration_mm_per_s2, tip.limit_acceleration_mm_per_s2, tip.acceleration, 'mm/s²'),
+    limitUse('tip, jerk', tip.max_jerk_mm_per_s3, tip.limit_jerk_mm_per_s3, tip.jerk, 'mm/s³'),
+    limitUse('axis, speed', axis.max_velocity_deg_per_s, axis.limit_velocity_deg_per_s, axis.velocity, '°/s'),
+    limitUse('axis, acceleration', axis.max_acceleration_deg_per_s2, axis.limit_acceleration_deg_per_s2, axis.acceleration, '°/s²'),
+    limitUse('axis, jerk', axis.max_jerk_deg_per_s3, axis.limit_jerk_deg_per_s3, axis.jerk, '°/s³'),
     ...joints.flatMap(jointUses),
     ...others.filter(({ violations }) => violations > 0),
   ];
