@@ -12,9 +12,9 @@ export function isConfig(data: unknown): data is ServeConfig {
   return isObject(data) && 'token' in data;
 }
 
-function requireName(read: string[], value: unknown): void {
+function requireName(known: string[], value: unknown): void {
   const own = isObject(value) && 'document' in value ? `is ${String(value.document)}` : 'does not name itself';
-  if (!read.some((name) => own === `is ${name}`)) throw new Error(`This page reads ${read.join(' or ')}, but the data ${own}.`);
+  if (!known.some((name) => own === `is ${name}`)) throw new Error(`This page reads ${known.join(' or ')}, but the data ${own}.`);
 }
 
 /** One of these documents. @throws Error where it is another, or of another version than this page reads */
@@ -22,12 +22,15 @@ export function requireDocument<Name extends keyof Documents>(names: Name[], val
   requireName(names.map((name) => versions[name]), value);
 }
 
-/** The documents of a report stand under their names; null: it has none. @throws Error as requireDocument */
+/** Those of a report, under their names, whose types come from their schemas. */
+export const read = ['comparison', 'lobes', 'sweep'] as const;
+
+/** A report; null in the place of a document: it has none. @throws Error as requireDocument */
 export function requireReport(data: unknown): asserts data is Report {
   if (!isObject(data) || !('title' in data)) throw new Error('The data is no report.');
   const parts = new Map<string, unknown>(Object.entries(data));
-  for (const [name, version] of Object.entries(versions)) {
+  for (const name of read) {
     const part = parts.get(name) ?? null;
-    if (part !== null) requireName([version], part);
+    if (part !== null) requireName([versions[name]], part);
   }
 }

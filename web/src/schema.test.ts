@@ -5,6 +5,7 @@ import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { versions } from '#schema/documents';
 import { lobesSample } from './lobes_sample';
+import { read } from './parse';
 import { sampleReport } from './report_sample';
 
 const ajv = new Ajv2020({ allErrors: true, allowUnionTypes: true });
@@ -28,8 +29,9 @@ function faults(value: unknown): string[] {
 
 describe('samples', () => {
   it.each(samples)('$name fits', ({ value }) => expect(faults(value)).toEqual([]));
-  it('are there of every document', () => {
-    expect(new Set(samples.map(({ value }) => named(value) && value.document))).toEqual(new Set(Object.values(versions)));
+  it('are there of every document that is read', () => {
+    const found = samples.map(({ value }) => named(value) && value.document);
+    for (const name of read) expect(found).toContain(versions[name]);
   });
   it('that do not fit are found', () => {
     const { seconds: _, ...without } = lobesSample;

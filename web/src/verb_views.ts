@@ -1,21 +1,15 @@
 // What tables and plots need of the documents of single verbs.
+import { keys } from '#schema/sweep';
 import type { ChartPoint, CoefficientsDocument, ExplainedPeak, ExplanationDocument, JointDocument, JointParameter, Num, Reading, Slot, SweepDocument } from './documents';
 import { fixed, modeName, significant } from './text';
 
-/** What a sweep varies beside the speed. */
-export interface Swept {
-  name: string;
-  unit: string;
-  values: number[];
-  valueOf: (point: ChartPoint) => Num;
-}
+const sweptKeys = { radial_depth: 'radial_depth_mm', lead: 'lead_deg', tilt: 'tilt_deg' } as const;
+const sweptNames = { radial_depth: 'Radial depth', lead: 'Lead', tilt: 'Tilt' };
 
-export function sweptOf(sweep: SweepDocument): Swept {
-  if (sweep.sweep === 'radial_depth') {
-    return { name: 'Radial depth', unit: 'mm', values: sweep.radial_depth_mm ?? [], valueOf: (point) => point.radial_depth_mm ?? null };
-  }
-  const key = sweep.sweep === 'lead' ? 'lead_deg' : 'tilt_deg';
-  return { name: sweep.sweep === 'lead' ? 'Lead' : 'Tilt', unit: '°', values: sweep[key] ?? [], valueOf: (point) => point[key] ?? null };
+/** What a sweep varies beside the speed. */
+export function sweptOf(sweep: SweepDocument) {
+  const key = sweptKeys[sweep.sweep];
+  return { key, name: sweptNames[sweep.sweep], unit: keys[key].unit, values: sweep[key] ?? [], valueOf: (point: ChartPoint): Num => point[key] ?? null };
 }
 
 /** "0.5 to 1.2, 2 to 3"; empty: at no value. */

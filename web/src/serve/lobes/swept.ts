@@ -4,8 +4,8 @@ import { intervalsText, sweptOf } from '../../verb_views';
 import { isHere, modeText, placed, type Point, type Ranges } from './settings';
 
 /** The key of its slider, as others are named. */
-export function sweptKey({ sweep }: SweepDocument): string {
-  return `operating_point.${sweep === 'radial_depth' ? 'radial_depth_mm' : `${sweep}_deg`}`;
+export function sweptKey(sweep: SweepDocument): string {
+  return `operating_point.${sweptOf(sweep).key}`;
 }
 
 export function sweptRanges(sweep: SweepDocument): Ranges {
