@@ -50,9 +50,9 @@ class Columns {
   [[nodiscard]] Json document() const {
     const std::string note =
         text_.empty() ? "Process damping is not known: limits at low speeds are lower bounds." : text_;
-    Json summary = {{"blocks", rows_},          {"cutting", cutting_}, {"unstable", unstable_},
-                    {"evaluations", rows_ / 9}, {"seconds", 3.2},      {"notes", {note}}};
-    return {{"blocks", json_}, {"summary", std::move(summary)}};
+    Json summary = {{"engagement_lost", 0},     {"blocks", rows_}, {"cutting", cutting_}, {"unstable", unstable_},
+                    {"evaluations", rows_ / 9}, {"seconds", 3.2},  {"worst", nullptr},    {"notes", {note}}};
+    return {{"document", "blocks/1"}, {"blocks", json_}, {"summary", std::move(summary)}};
   }
 
  private:

@@ -26,6 +26,7 @@ export type Num = number | null;
 export interface Fact {
   label: string;
   value: string;
+  meaning?: string;
 }
 
 export type Verdict = 'stable' | 'borderline' | 'chatter';

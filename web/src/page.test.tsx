@@ -162,7 +162,7 @@ it('names the worst blocks of a program, and says where none cuts', () => {
   for (const scan of blocks.limit_over.slice(1)) scan.limit_depth_mm.fill(null);
   expect(page()).toContain('With the cut of block 360 no limit was found anywhere along y, z, γ.');
   const { block, line, x_mm, y_mm, z_mm } = blocks.blocks;
-  report.blocks = { blocks: { block, line, x_mm, y_mm, z_mm }, summary: { ...blocks.summary, cutting: 0, unstable: 0 }, limit_over: [] };
+  report.blocks = { ...blocks, blocks: { block, line, x_mm, y_mm, z_mm }, summary: { ...blocks.summary, cutting: 0, unstable: 0 }, limit_over: [] };
   expect(page()).toContain('No block of the program cuts.');
   expect(page()).not.toContain('data-plot="program-limit"');
 });

@@ -23,7 +23,7 @@ export function requireDocument<Name extends keyof Documents>(names: Name[], val
 }
 
 /** Those of a report, under their names, whose types come from their schemas. */
-export const read = ['comparison', 'lobes', 'sweep'] as const;
+export const read = ['blocks', 'comparison', 'lobes', 'sweep'] as const;
 
 /** A report; null in the place of a document: it has none. @throws Error as requireDocument */
 export function requireReport(data: unknown): asserts data is Report {

@@ -89,9 +89,9 @@ export function Facts({ facts }: { facts: Fact[] }) {
   if (facts.length === 0) return null;
   return (
     <dl class="facts">
-      {facts.map(({ label, value }) => (
+      {facts.map(({ label, value, meaning }) => (
         <div>
-          <dt>{label}</dt>
+          <dt title={meaning}>{label}</dt>
           <dd>{value}</dd>
         </div>
       ))}

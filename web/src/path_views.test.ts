@@ -1,37 +1,16 @@
 import { describe, expect, it } from 'vitest';
-import type { BlockColumns, BlocksDocument } from './documents';
+import { blocksSample } from './blocks_sample';
 import { dark, light } from './figures/theme';
 import { blockFacts, boundOf, colourAt, coloursOf, gradient, limitOf, pathData, programFacts, quantitiesOf, rangeOf, thinned, worstBlocks } from './path_views';
 
-/** In air, stable, unstable, without a limit. */
-const columns: BlockColumns = {
-  block: [1, 2, 3, 4],
-  line: [10, 11, 12, 13],
-  x_mm: [0, 10, 20, null],
-  y_mm: [0, 0, 5, 5],
-  z_mm: [5, -1, -1, -1],
-  axial_depth_mm: [null, 0.5, 1, 0.2],
-  spectral_radius: [null, 0.8, 1.3, 0.2],
-  limit_depth_mm: [null, 0.8, 0.7, null],
-  limit_5_percent_mm: [null, 0.7, 0.6, 1.9],
-  limit_95_percent_mm: [null, 0.9, 0.8, null],
-  stability_margin: [null, 0.3, -0.7, 0.9],
-  regime: [null, 'regenerative', 'mode-coupling', 'none'],
-  lower_bound: [null, false, true, false],
-  peak_f_n: [null, 40, 90, 10],
-  surface_error_um: [null, 12, null, -8],
-  surface_left_um: [null, 9, null, null],
-  measured_nearby: [null, true, false, true],
-  note: [null, null, '<b>far</b>', null],
-};
+const { blocks: columns } = blocksSample;
 const values = (index: number) => Object.fromEntries(blockFacts(columns, index).map(({ label, value }) => [label, value]));
 
 describe('a path', () => {
-  it('has kinds, and places that are not known', () => {
+  it('has kinds and places', () => {
     const { ends, kinds } = pathData(columns);
     expect([...kinds]).toEqual([0, 1, 2, 1]);
     expect([...ends.slice(3, 6)]).toEqual([10, 0, -1]);
-    expect(ends[9]).toBeNaN();
   });
   it('is coloured by what some block has', () => {
     expect(quantitiesOf(columns).map(({ key }) => key)).toEqual(['stability_margin', 'limit_depth_mm', 'regime', 'peak_f_n', 'surface_error_um', 'surface_left_um']);
@@ -91,16 +70,14 @@ describe('a block', () => {
 
 it('names the blocks nearest to chatter first', () => {
   expect(worstBlocks(columns, 2)).toEqual([2, 1]);
-  const document = { blocks: columns, summary: { blocks: 4, cutting: 3, unstable: 1, engagement_lost: 2, evaluations: 3, seconds: 0.1, notes: [] }, limit_over: [] } satisfies BlocksDocument;
-  const facts = programFacts(document);
+  const facts = programFacts(blocksSample);
   expect(facts).toContainEqual({ label: 'Nearest to chatter', value: 'block 3, margin -0.7' });
   expect(facts).toContainEqual({ label: 'Far from measured postures', value: '1' });
   expect(facts).toContainEqual({ label: 'Engagement lost', value: '2' });
 });
 
 it('ranks what is unstable first, then the gain that is left', () => {
-  const none: null[] = [];
-  const ranked = { block: [1, 2, 3, 4, 5, 6], line: [1, 2, 3, 4, 5, 6], x_mm: none, y_mm: none, z_mm: none };
+  const ranked = { block: [1, 2, 3, 4, 5, 6], line: [1, 2, 3, 4, 5, 6], x_mm: [], y_mm: [], z_mm: [] };
   const numbers = {
     spectral_radius: [0.998, 0.99, 1.01, 1.2, 0.99, 0.99],
     gain_margin: [1.8, 1.1, 0.9, 0.5, null, 0.8],
@@ -110,7 +87,7 @@ it('ranks what is unstable first, then the gain that is left', () => {
   };
   const all = { ...ranked, ...numbers };
   expect(worstBlocks(all, 10).map((i) => all.block[i])).toEqual([4, 3, 6, 2, 1, 5]);
-  expect(programFacts({ blocks: all, summary: { blocks: 6, cutting: 6, unstable: 2, evaluations: 6, seconds: null, notes: [] }, limit_over: [] })).toContainEqual({
+  expect(programFacts({ ...blocksSample, blocks: all })).toContainEqual({
     label: 'Nearest to chatter',
     value: 'block 4, gain margin 0.5',
   });

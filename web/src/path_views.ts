@@ -1,4 +1,5 @@
 // What the section of a program's blocks needs, made of blocks.json.
+import { keys } from '#schema/blocks';
 import type { BlockColumns, BlocksDocument, Fact, Num, Regime } from './documents';
 import { thinSpace, type Theme } from './figures/theme';
 import { inAir, stable, unstable, type PathColours, type PathData } from './path/contract';
@@ -10,35 +11,39 @@ type NumberColumn = { [K in keyof BlockColumns]-?: Num[] extends NonNullable<Blo
 export interface Quantity {
   key: NumberColumn | 'regime';
   name: string;
-  unit: string;
   worse: 'low' | 'high';
+}
+
+/** What blocks.json says of the key. */
+export function saidOf(key: Quantity['key']) {
+  return keys[`blocks.${key}`];
 }
 
 type NumberQuantity = Quantity & { key: NumberColumn };
 
 const margins: NumberQuantity[] = [
-  { key: 'stability_margin', name: 'Stability margin', unit: '', worse: 'low' },
-  { key: 'gain_margin', name: 'Gain margin', unit: '', worse: 'low' },
+  { key: 'stability_margin', name: 'Stability margin', worse: 'low' },
+  { key: 'gain_margin', name: 'Gain margin', worse: 'low' },
 ];
 
 /** What the cut does to robot, tool and part. */
 const loads: NumberQuantity[] = [
-  { key: 'peak_f_n', name: 'Peak force', unit: 'N', worse: 'high' },
-  { key: 'torque_n_m', name: 'Torque', unit: 'N·m', worse: 'high' },
-  { key: 'power_w', name: 'Power', unit: 'W', worse: 'high' },
-  { key: 'deflection_um', name: 'Deflection', unit: 'µm', worse: 'high' },
-  { key: 'joint_torque_share', name: 'Joint load, share of the drive', unit: '', worse: 'high' },
-  { key: 'cut_joint_torque_n_m', name: 'Joint load of the cut', unit: 'N·m', worse: 'high' },
-  { key: 'surface_error_um', name: 'Surface error', unit: 'µm', worse: 'high' },
-  { key: 'surface_left_um', name: 'Error of the finished surface', unit: 'µm', worse: 'high' },
-  { key: 'vibration_um', name: 'Forced vibration', unit: 'µm', worse: 'high' },
-  { key: 'condition_number', name: 'Condition number', unit: '', worse: 'high' },
+  { key: 'peak_f_n', name: 'Peak force', worse: 'high' },
+  { key: 'torque_n_m', name: 'Torque', worse: 'high' },
+  { key: 'power_w', name: 'Power', worse: 'high' },
+  { key: 'deflection_um', name: 'Deflection', worse: 'high' },
+  { key: 'joint_torque_share', name: 'Joint load, share of the drive', worse: 'high' },
+  { key: 'cut_joint_torque_n_m', name: 'Joint load of the cut', worse: 'high' },
+  { key: 'surface_error_um', name: 'Surface error', worse: 'high' },
+  { key: 'surface_left_um', name: 'Error of the finished surface', worse: 'high' },
+  { key: 'vibration_um', name: 'Forced vibration', worse: 'high' },
+  { key: 'condition_number', name: 'Condition number', worse: 'high' },
 ];
 
 const all: Quantity[] = [
   ...margins,
-  { key: 'limit_depth_mm', name: 'Limit depth', unit: 'mm', worse: 'low' },
-  { key: 'regime', name: 'Regime', unit: '', worse: 'high' },
+  { key: 'limit_depth_mm', name: 'Limit depth', worse: 'low' },
+  { key: 'regime', name: 'Regime', worse: 'high' },
   ...loads,
 ];
 
@@ -190,8 +195,8 @@ export function regimeName(columns: BlockColumns, index: number): string {
 
 /** What is known of a block. */
 export function blockFacts(columns: BlockColumns, index: number): Fact[] {
-  const at = (key: NumberColumn, unit: string) => withUnit(numberAt(columns[key], index), unit);
-  const shown = ({ key, name, unit }: NumberQuantity): Fact => ({ label: name, value: at(key, unit) });
+  const at = (key: NumberColumn) => withUnit(numberAt(columns[key], index), saidOf(key).unit);
+  const shown = ({ key, name }: NumberQuantity): Fact => ({ label: name, value: at(key), meaning: saidOf(key).meaning });
   const place: Fact[] = [
     { label: 'Block', value: fixed(columns.block[index]!, 0) },
     { label: 'Line', value: fixed(columns.line[index] ?? null, 0) },
@@ -203,15 +208,15 @@ export function blockFacts(columns: BlockColumns, index: number): Fact[] {
   const bound = columns.lower_bound?.[index] ? ', a lower bound' : '';
   const facts: Fact[] = [
     { label: 'Verdict', value: isUnstable(columns, index) ? 'unstable' : 'stable' },
-    { label: '|μ|', value: at('spectral_radius', '') },
-    { label: 'Axial, radial depth', value: `${at('axial_depth_mm', '')}, ${at('radial_depth_mm', 'mm')}` },
+    { label: '|μ|', value: at('spectral_radius') },
+    { label: 'Axial, radial depth', value: `${significant(numberAt(columns.axial_depth_mm, index))}, ${at('radial_depth_mm')}` },
     { label: 'Limit (5\u00a0–\u00a095\u00a0%)', value: `${limitOf(columns, index)}${thinSpace}mm${bound}` },
     ...margins.map(shown),
-    { label: 'Chatter frequency', value: at('chatter_frequency_hz', 'Hz') },
+    { label: 'Chatter frequency', value: at('chatter_frequency_hz') },
     { label: 'Mode', value: columns.mode?.[index] ?? dash },
     { label: 'Regime', value: regimeName(columns, index) },
-    { label: 'Speed', value: at('spindle_speed_rpm', 'rpm') },
-    { label: 'Feed', value: at('feed_mm_per_min', 'mm/min') },
+    { label: 'Speed', value: at('spindle_speed_rpm') },
+    { label: 'Feed', value: at('feed_mm_per_min') },
     ...loads.map(shown),
   ];
   if (columns.measured_nearby?.[index] === false) said.push({ label: 'Dynamics', value: 'far from every measured posture' });
@@ -231,9 +236,9 @@ export function programFacts({ blocks, summary }: BlocksDocument): Fact[] {
     const left = gain === null ? `margin ${significant(blocks.stability_margin![worst]!)}` : `gain margin ${significant(gain)}`;
     facts.push({ label: 'Nearest to chatter', value: `block ${blocks.block[worst]!}, ${left}` });
   }
-  if ((summary.engagement_lost ?? 0) > 0) facts.push({ label: 'Engagement lost', value: fixed(summary.engagement_lost!, 0) });
+  if (summary.engagement_lost > 0) facts.push({ label: 'Engagement lost', value: fixed(summary.engagement_lost, 0) });
   if (away > 0) facts.push({ label: 'Far from measured postures', value: fixed(away, 0) });
-  facts.push({ label: 'Different cuts looked at', value: `${fixed(summary.evaluations, 0)}${summary.seconds === null ? '' : ` in ${significant(summary.seconds)}${thinSpace}s`}` });
+  facts.push({ label: 'Different cuts looked at', value: `${fixed(summary.evaluations, 0)} in ${significant(summary.seconds)}${thinSpace}s` });
   return facts;
 }
 

@@ -1,4 +1,5 @@
 // A program: the forces and the stability of its blocks, and its smoothed trajectory.
+import type { BlocksDocument as WrittenBlocks } from '#schema/blocks';
 import type { Num } from './documents';
 
 /** A block of a program: position, length and time at its end. */
@@ -44,57 +45,13 @@ export interface Program {
   blocks: Block[]; // of a long program a part, its first and last among them
 }
 
-export type Regime = 'regenerative' | 'mode-coupling' | 'low-frequency' | 'none';
-
-/** Columns of blocks.json, a value a block, null in air; one that says nothing is left out. */
-export interface BlockColumns {
-  block: number[];
-  line: number[];
-  x_mm: Num[]; // where it ends
-  y_mm: Num[];
-  z_mm: Num[];
-  axial_depth_mm?: Num[];
-  radial_depth_mm?: Num[];
-  spindle_speed_rpm?: Num[];
-  feed_mm_per_min?: Num[];
-  spectral_radius?: Num[];
-  limit_depth_mm?: Num[]; // null: none up to the depth that was searched
-  limit_5_percent_mm?: Num[];
-  limit_95_percent_mm?: Num[];
-  stability_margin?: Num[];
-  gain_margin?: Num[];
-  chatter_frequency_hz?: Num[];
-  mode?: (string | null)[];
-  regime?: (Regime | null)[];
-  lower_bound?: (boolean | null)[];
-  peak_f_n?: Num[];
-  torque_n_m?: Num[];
-  power_w?: Num[];
-  deflection_um?: Num[];
-  joint_torque_share?: Num[];
-  cut_joint_torque_n_m?: Num[];
-  surface_error_um?: Num[];
-  surface_left_um?: Num[]; // on the finished surface alone
-  vibration_um?: Num[];
-  condition_number?: Num[];
-  measured_nearby?: (boolean | null)[];
-  note?: (string | null)[];
-}
-
+type WholeBlocks = WrittenBlocks['blocks'];
+/** Columns of blocks.json; a report leaves out those that say nothing. */
+export type BlockColumns = Partial<WholeBlocks> & Pick<WholeBlocks, 'block' | 'line' | 'x_mm' | 'y_mm' | 'z_mm'>;
+export type BlocksDocument = Omit<WrittenBlocks, 'blocks'> & { blocks: BlockColumns };
+export type Regime = NonNullable<WholeBlocks['regime'][number]>;
 /** The limit over one coordinate of the tool's pose, around one block. */
-export interface LimitOver {
-  parameter: 'x_mm' | 'y_mm' | 'z_mm' | 'gamma_deg';
-  value: Num[];
-  limit_depth_mm: Num[];
-  at_block: number;
-}
-
-/** blocks.json: stability of every block of a program */
-export interface BlocksDocument {
-  blocks: BlockColumns;
-  summary: { blocks: number; cutting: number; unstable: number; engagement_lost?: number; evaluations: number; seconds: Num; notes: string[] };
-  limit_over: LimitOver[];
-}
+export type LimitOver = BlocksDocument['limit_over'][number];
 
 /** Where a trajectory came nearest to a limit, and how many samples violate it. */
 export interface NearestToLimit {

@@ -39,7 +39,7 @@ it('a band ends where one of its edges does', () => {
 });
 
 it('limits over a pose share one scale that reaches above all of them', () => {
-  const scan = (values: (number | null)[]): LimitOver => ({ parameter: 'gamma_deg', value: [0, 1], limit_depth_mm: values, at_block: 2 });
+  const scan = (values: (number | null)[]): LimitOver => ({ parameter: 'gamma_deg', value: [0, 1], limit_depth_mm: values, at_block: 2, at_line: 12 });
   const scans = [scan([1, null]), scan([0.5, 2])];
   expect(deepest(scans, 0.4)).toBe(2);
   expect(deepest([scan([null, null])], null)).toBe(0);

@@ -113,7 +113,11 @@ export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: stri
       requireDocument(['lobes', 'sweep'], answer.lobes);
       return answer;
     },
-    program: (request: ProgramRequest, signal?: AbortSignal) => post<ProgramAnswer>('/api/program', request, signal),
+    async program(request: ProgramRequest, signal?: AbortSignal): Promise<ProgramAnswer> {
+      const answer = await post<ProgramAnswer>('/api/program', request, signal);
+      requireDocument(['blocks'], answer.blocks);
+      return answer;
+    },
     tap: async (signal?: AbortSignal) => wholeTap(await get<Tap | null>('/api/tap', signal)),
     startTap: async (request: TapRequest) => ({ state: wholeTap((await post<{ state: Tap }>('/api/tap', request)).state) }),
     /** Of a stream's hits from now on. */

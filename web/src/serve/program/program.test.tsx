@@ -3,6 +3,7 @@ import type { ComponentChildren } from 'preact';
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
 import type { Decision, GammaMap } from '../../decision';
+import { blocksSample } from '../../blocks_sample';
 import type { BlocksDocument, Report } from '../../documents';
 import { light } from '../../figures/theme';
 import { pathData, samePlaces } from '../../path_views';
@@ -38,12 +39,13 @@ const map: GammaMap = {
   least_margin: 0.2,
 };
 const document: BlocksDocument = {
+  ...blocksSample,
   blocks: {
     block: [1, 2, 3, 4, 5],
     line: [11, 12, 13, 14, 15],
     x_mm: [0, 10, 20, 30, 40],
     y_mm: [0, 0, 0, 0, 0],
-    z_mm: [5, 0, 0, 0, null],
+    z_mm: [5, 0, 0, 0, 0],
     axial_depth_mm: [null, 1, 1, 1, 1],
     spectral_radius: [null, 0.9, 1.1, 0.8, 0.7],
     stability_margin: [null, 0.2, -0.1, 0.3, 0.4],
@@ -51,7 +53,7 @@ const document: BlocksDocument = {
     deflection_um: [null, 20, 31, 18, 12],
     regime: [null, 'regenerative', 'regenerative', 'none', 'none'],
   },
-  summary: { blocks: 5, cutting: 4, unstable: 1, evaluations: 4, seconds: 0.2, notes: [] },
+  summary: { ...blocksSample.summary, blocks: 5, cutting: 4, engagement_lost: 0 },
   limit_over: [],
 };
 const decision = { status: 'found', decided: {}, gamma_map: map } as unknown as Decision;
@@ -149,7 +151,7 @@ describe('programs', () => {
     const more = { ...document.blocks, x_mm: [0, 10.0000004, 20, 30, 40] };
     expect(samePlaces(pathData(document.blocks), pathData({ ...more, spectral_radius: answer.blocks.blocks.spectral_radius! }))).toBe(true);
     expect(samePlaces(pathData(document.blocks), pathData({ ...more, y_mm: [0, 0, 0.1, 0, 0] }))).toBe(false);
-    expect(samePlaces(pathData(document.blocks), pathData({ ...more, z_mm: [5, 0, 0, 0, 0] }))).toBe(false);
+    expect(samePlaces(pathData(document.blocks), pathData({ ...more, z_mm: [5, 0, 0, 0, 1] }))).toBe(false);
   });
   it('list the blocks around one of them', () => {
     expect(blocksAround(document.blocks, null, 2)).toEqual([1, 2]);

@@ -63,7 +63,7 @@ export function outcomeOf({ blocks: columns, summary }: BlocksDocument): Program
     block: worst === null ? null : columns.block[worst]!,
     force_n: most(columns.peak_f_n),
     deflection_um: most(columns.deflection_um),
-    engagement_lost: summary.engagement_lost ?? 0,
+    engagement_lost: summary.engagement_lost,
     cannot_take: null,
   };
 }

@@ -1,0 +1,53 @@
+// A blocks.json of four blocks, for tests: in air, stable, unstable, without a limit.
+import type { BlocksDocument } from '#schema/blocks';
+
+const unknown = [null, null, null, null];
+
+export const blocksSample: BlocksDocument = {
+  document: 'blocks/1',
+  blocks: {
+    block: [1, 2, 3, 4],
+    line: [10, 11, 12, 13],
+    x_mm: [0, 10, 20, 20],
+    y_mm: [0, 0, 5, 5],
+    z_mm: [5, -1, -1, -1],
+    axial_depth_mm: [null, 0.5, 1, 0.2],
+    radial_depth_mm: unknown,
+    spindle_speed_rpm: unknown,
+    feed_mm_per_min: unknown,
+    spectral_radius: [null, 0.8, 1.3, 0.2],
+    limit_depth_mm: [null, 0.8, 0.7, null],
+    stability_margin: [null, 0.3, -0.7, 0.9],
+    chatter_frequency_hz: unknown,
+    mode: unknown,
+    regime: [null, 'regenerative', 'mode-coupling', 'none'],
+    peak_f_n: [null, 40, 90, 10],
+    torque_n_m: unknown,
+    power_w: unknown,
+    deflection_um: unknown,
+    surface_error_um: [null, 12, null, -8],
+    surface_left_um: [null, 9, null, null],
+    gain_margin: unknown,
+    limit_5_percent_mm: [null, 0.7, 0.6, 1.9],
+    limit_95_percent_mm: [null, 0.9, 0.8, null],
+    condition_number: unknown,
+    joint_torque_share: unknown,
+    cut_joint_torque_n_m: unknown,
+    vibration_um: unknown,
+    lower_bound: [null, false, true, false],
+    measured_nearby: [null, true, false, true],
+    evaluation: [null, 1, 2, 3],
+    note: [null, null, '<b>far</b>', null],
+  },
+  summary: {
+    engagement_lost: 2,
+    blocks: 4,
+    cutting: 3,
+    unstable: 1,
+    evaluations: 3,
+    seconds: 0.1,
+    worst: { block: 3, line: 12, axial_depth_mm: 1, limit_depth_mm: 0.7, stability_margin: -0.7, gain_margin: null, regime: 'mode-coupling' },
+    notes: [],
+  },
+  limit_over: [{ parameter: 'gamma_deg', value: [0, 1], limit_depth_mm: [0.7, null], at_block: 3, at_line: 12 }],
+};
