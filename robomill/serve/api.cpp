@@ -1,8 +1,5 @@
 #include "robomill/serve/api.hpp"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -28,6 +25,7 @@
 #include "robomill/serve/latest.hpp"
 #include "robomill/serve/lobes/live_lobes.hpp"
 #include "robomill/serve/monitor/sessions.hpp"
+#include "robomill/serve/overview/overview.hpp"
 #include "robomill/serve/process/job_process.hpp"
 #include "robomill/serve/process/monitor_service.hpp"
 #include "robomill/serve/program/live_program.hpp"
@@ -46,12 +44,13 @@ struct Route {
   std::string_view method, path;  ///< "/api/jobs/" takes a number behind it, and perhaps a word
   std::uint64_t most_body;
 };
-constexpr std::array<Route, 25> routes = {{{"GET", "/api/state", 0},
+constexpr std::array<Route, 26> routes = {{{"GET", "/api/state", 0},
                                            {"GET", "/api/file", 0},
                                            {"PUT", "/api/file", Folder::most_file_bytes},
                                            {"POST", "/api/check", text_body},
                                            {"POST", "/api/edit", text_body},
                                            {"POST", "/api/inspect", small_body},
+                                           {"GET", "/api/overview", 0},
                                            {"GET", "/api/verbs", 0},
                                            {"GET", "/api/jobs", 0},
                                            {"POST", "/api/jobs", small_body},
@@ -79,17 +78,17 @@ bool fits(const Route& route, std::string_view path) {
 
 /// Whether what is asked reads or writes files, or lists them. What runs can be looked at and ended without its folder.
 bool is_of_folder(const HttpRequest& request) {
-  if (request.method == "GET") return request.path == "/api/state" || request.path == "/api/file";
-  return request.method != "DELETE" && request.path != "/api/edit";
+  const std::string& path = request.path;
+  if (request.method == "GET") return path == "/api/state" || path == "/api/file" || path == "/api/overview";
+  return request.method != "DELETE" && path != "/api/edit";
 }
 
 io::Json file_object(const FolderFile& file) {
-  const auto time = std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(file.modified));
   return {{"path", file.path},
           {"kind", file.what.kind},
           {"document", io::text_or_null(file.what.document)},
           {"bytes", file.bytes},
-          {"modified", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", time)}};
+          {"modified", time_text(file.modified)}};
 }
 
 /// How jobs are run: each in a process of its own where there is a program for that.
@@ -137,6 +136,7 @@ struct Api::Parts {
   [[nodiscard]] HttpResponse get_file(const HttpRequest& request) const;
   [[nodiscard]] HttpResponse put_file(const HttpRequest& request);
   [[nodiscard]] HttpResponse read_file_of(const HttpRequest& request);
+  [[nodiscard]] HttpResponse overview(const HttpRequest& request);
   [[nodiscard]] static HttpResponse edit(const io::Json& body);
   [[nodiscard]] HttpResponse start_job(const io::Json& body);
   [[nodiscard]] HttpResponse about_job(const HttpRequest& request);
@@ -152,6 +152,7 @@ struct Api::Parts {
   Publish publish;
   std::unique_ptr<WorkerProcess> live;    ///< lobes; null: in this process
   std::unique_ptr<WorkerProcess> reader;  ///< of files that a request names; null: in this process
+  PlanReader plans;                       ///< of reader_worker alone
   JobRunner jobs;
   TapTests taps;                                    ///< of tap_worker alone
   MonitorSessions monitors;                         ///< of monitor_worker alone
@@ -227,6 +228,23 @@ HttpResponse Api::Parts::read_file_of(const HttpRequest& request) {
                       .patience = std::chrono::milliseconds(500)});
 }
 
+/// Of a job, by the runs of it that are remembered.
+HttpResponse Api::Parts::overview(const HttpRequest& request) {
+  const auto named = request.query.find("file");
+  if (named == request.query.end()) return error_response(400, "file is missing");
+  io::Json written = io::Json::array();
+  for (const io::Json& job : jobs.list()) {
+    const bool is_its = job["verb"] == "plan" && job["input"] == named->second && job["state"] == "done";
+    if (is_its && job["output"].is_string()) written.push_back(job["output"]);
+  }
+  const std::string body = io::plain_text({{"file", named->second}, {"written", std::move(written)}});
+  if (!reader) return answer_overview(folder, plans, body);
+  return reader->ask({.kind = Frame::overview,
+                      .body = body,
+                      .most = std::chrono::seconds(30),
+                      .patience = std::chrono::milliseconds(500)});
+}
+
 HttpResponse Api::Parts::edit(const io::Json& body) {
   const std::string text = body.at("text");
   if (text.size() > most_edited_bytes) return error_response(413, too_long_to_edit);
@@ -268,7 +286,7 @@ Worker& Api::Parts::worker_of(const HttpRequest& request) {
   const std::string& path = request.path;
   if (path.starts_with("/api/monitors")) return monitor_worker;
   if (path.starts_with("/api/tap")) return tap_worker;
-  return path == "/api/check" || path == "/api/inspect" ? reader_worker : at_hand;
+  return path == "/api/check" || path == "/api/inspect" || path == "/api/overview" ? reader_worker : at_hand;
 }
 
 HttpResponse Api::Parts::answer(const HttpRequest& request) {
@@ -276,6 +294,7 @@ HttpResponse Api::Parts::answer(const HttpRequest& request) {
   if (is_of_folder(request)) require_folder(folder.root());
   if (path == "/api/state") return state();
   if (path == "/api/file") return request.method == "GET" ? get_file(request) : put_file(request);
+  if (path == "/api/overview") return overview(request);
   if (path == "/api/verbs") return json_response(verbs_json());
   if (path.starts_with("/api/jobs/")) return about_job(request);
   if (path == "/api/jobs" && request.method == "GET") return json_response(jobs.list());

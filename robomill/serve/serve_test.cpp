@@ -107,6 +107,25 @@ TEST_F(Serve, StateListsTheFolder) {
   EXPECT_EQ(ask("DELETE", "/", "{}").status, 405);
 }
 
+TEST_F(Serve, GivesTheOverviewOfAJobBeforeAndAfterItsRun) {
+  const auto stage = [&](const char* name) {
+    for (const json& one : get("/api/overview?file=job.toml")["stages"]) {
+      if (one["stage"] == name) return one;
+    }
+    return json();
+  };
+  EXPECT_EQ(stage("modes")["says"], "2 modes");
+  EXPECT_EQ(stage("decision")["state"], "ready");
+  EXPECT_EQ(stage("decision")["next"]["does"], "run");
+  const int id = post("/api/jobs", {{"verb", "plan"}, {"input", "job.toml"}, {"output", "far/away"}})["id"];
+  EXPECT_EQ(wait_for_end(id)["state"], "done");
+  EXPECT_EQ(get("/api/overview?file=job.toml")["results"], "far/away");
+  EXPECT_NE(stage("decision")["state"], "ready");
+  EXPECT_EQ(ask("GET", "/api/overview").status, 400);
+  EXPECT_EQ(ask("GET", "/api/overview?file=none.toml").status, 404);
+  EXPECT_EQ(ask("GET", "/api/overview?file=../outside.toml").status, 400);
+}
+
 TEST_F(Serve, ReadsAndWritesFiles) {
   const HttpAnswer read = ask("GET", "/api/file?path=lobes.toml");
   EXPECT_EQ(read.body, lobes);

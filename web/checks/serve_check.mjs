@@ -12,10 +12,11 @@ import { startRunning } from './serve_running.mjs';
 import { editFile, runJob, runVerb, sendFiles, tapTest } from './serve_tasks.mjs';
 import { moveLobes } from './serve_lobes.mjs';
 import { monitorSpindle } from './serve_monitor.mjs';
+import { openJob } from './serve_overview.mjs';
 import { workProgram } from './serve_program.mjs';
 import { serve } from './serve_start.mjs';
 
-const tasks = { moveLobes, editFile, runVerb, runJob, workProgram, sendFiles, tapTest, monitorSpindle };
+const tasks = { openJob, moveLobes, editFile, runVerb, runJob, workProgram, sendFiles, tapTest, monitorSpindle };
 
 /** Goes to a view by its address and waits until it is there. */
 async function open(page, hash, heading = 'true') {
@@ -34,6 +35,7 @@ function fileOf(state, kind) {
 function viewsOf(state) {
   const drawn = `document.querySelector('.chart-place svg.main-svg') !== null`;
   const views = [
+    { name: 'overview', hash: '#/overview', there: `document.querySelector('[aria-label="Stages"] table, [aria-label="Jobs"] table, [aria-label="How to begin"]') !== null` },
     { name: 'files', hash: '#/files', there: `document.querySelector('#view table') !== null` },
     { name: 'jobs', hash: '#/jobs', there: 'true' },
     { name: 'program', hash: '#/program', there: `document.querySelector('.gamma-place .handle, [data-panel="program-start"]') !== null` },

@@ -18,8 +18,14 @@ namespace {
 
 using Read = void (*)(const io::TomlSource&);
 
+/// A job, and its cut where it has that itself.
+void read_job_and_cut(const io::TomlSource& source) {
+  const jobs::Job job = jobs::read_job(source);
+  if (job.lobes == source.path) static_cast<void>(jobs::read_lobes(source));
+}
+
 constexpr std::array<std::pair<std::string_view, Read>, 8> readers = {{
-    {"job", [](const io::TomlSource& source) { (void)jobs::read_job(source); }},
+    {"job", read_job_and_cut},
     {"hits", [](const io::TomlSource& source) { (void)modal::read_hits(source); }},
     {"lobes", [](const io::TomlSource& source) { (void)jobs::read_lobes(source); }},
     {"forces", [](const io::TomlSource& source) { (void)process::read_forces(source); }},

@@ -1,8 +1,10 @@
 #include "robomill/serve/files/folder.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <system_error>
 
@@ -23,6 +25,11 @@ bool hidden(const fs::path& name) {
 }
 
 }  // namespace
+
+std::string time_text(fs::file_time_type time) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(time)));
+}
 
 void require_folder(const fs::path& root) {
   std::error_code error;

@@ -21,6 +21,9 @@ struct FolderFile {
   bool operator==(const FolderFile&) const = default;
 };
 
+/// "2026-11-27T18:57:00Z"
+[[nodiscard]] std::string time_text(std::filesystem::file_time_type time);
+
 /// Before anything is read or written below it, which would be made anew.
 /// @throws InvalidInput if the folder that is served was taken away or cannot be read
 void require_folder(const std::filesystem::path& root);

@@ -13,8 +13,8 @@ namespace robomill::serve {
 /// What goes between the server and a process that works for it: what it is, and its bytes.
 struct Frame {
   /// To the process: what it may do, first of all; what it is asked; that it should stop.
-  static constexpr char begin = 'b', job = 'j', program = 'p', lobes = 'l', check = 'c', inspect = 'i', monitors = 'm',
-                        stop = 's';
+  static constexpr char begin = 'b', job = 'j', program = 'p', lobes = 'l', check = 'c', inspect = 'i', overview = 'o',
+                        monitors = 'm', stop = 's';
   /// From it: how far it is; an event for the pages; its answer.
   static constexpr char progress = 'f', event = 'e', answer = 'a';
 

@@ -40,6 +40,7 @@
 #include "robomill/serve/jobs/verbs.hpp"
 #include "robomill/serve/lobes/live_lobes.hpp"
 #include "robomill/serve/monitor/sessions.hpp"
+#include "robomill/serve/overview/overview.hpp"
 #include "robomill/serve/process/frames.hpp"
 #include "robomill/serve/process/job_process.hpp"
 #include "robomill/serve/process/monitor_service.hpp"
@@ -184,6 +185,8 @@ class Work {
         return check_text(folder_, asked.body);
       case Frame::inspect:
         return inspect_file(folder_, asked.body);
+      case Frame::overview:
+        return answer_overview(folder_, plans_, asked.body);
       case Frame::monitors:
         return monitors_.answer(http_request_of(asked.body));
       default:
@@ -236,6 +239,7 @@ class Work {
   std::mutex sending_;
   MonitorSessions monitors_;
   LiveLobes lobes_;
+  PlanReader plans_;
   std::shared_ptr<const jobs::PlanResult> plan_;  ///< of the last job
   std::string task_;
   std::chrono::steady_clock::time_point told_ = {};

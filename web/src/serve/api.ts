@@ -4,6 +4,7 @@ import type { Report } from '../documents';
 import { requireDocument, requireReport } from '../parse';
 import type { MonitorSession, MonitorSummary } from './monitor/documents';
 import { sayOutdated } from './outdated';
+import type { Overview } from './overview/documents';
 import type { ProgramAnswer, ProgramRequest } from './program/documents';
 
 /** The server's no: its status, and what was wrong. Status 0: no answer at all. */
@@ -99,6 +100,8 @@ export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: stri
       const nothing = { columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [] };
       return { ...nothing, ...(await post<Pick<Inspection, 'kind'> & Partial<Inspection>>('/api/inspect', { path }, signal)) };
     },
+    /** Of a job. */
+    overview: (file: string, signal?: AbortSignal) => get<Overview>(`/api/overview?file=${encodeURIComponent(file)}`, signal),
     verbs: (signal?: AbortSignal) => get<Verb[]>('/api/verbs', signal),
     run: (request: JobRequest) => post<{ id: number }>('/api/jobs', request),
     job: async (id: number, signal?: AbortSignal) => wholeFault(await get<Job>(`/api/jobs/${id}`, signal)),

@@ -10,6 +10,10 @@ import { JobView } from './files/job';
 import { JobsView } from './jobs/jobs';
 import { LobesView } from './lobes/lobes';
 import { MonitorView } from './monitor/monitor';
+import { belongsTo } from './overview/belongs';
+import { OverviewsContext, readable, useChosen, useOverviews } from './overview/chosen';
+import { OverviewView } from './overview/overview';
+import { pathIn } from './overview/stages';
 import { FaultText } from './pieces';
 import { ProgramView } from './program/program';
 import { goTo, href, useRoute, type Route, type View } from './route';
@@ -17,6 +21,7 @@ import { useServer } from './server';
 import { TapView } from './tap/tap';
 
 const links: { view: View; name: string }[] = [
+  { view: 'overview', name: 'Job' },
   { view: 'files', name: 'Files' },
   { view: 'jobs', name: 'Jobs' },
   { view: 'program', name: 'Program' },
@@ -25,7 +30,8 @@ const links: { view: View; name: string }[] = [
   { view: 'monitor', name: 'Monitor' },
 ];
 
-export function Bar({ folder, view }: { folder: string; view: View }) {
+/** `pathOf`: the file that a view shows of the chosen job. */
+export function Bar({ folder, view, pathOf = () => '' }: { folder: string; view: View; pathOf?: (view: View) => string }) {
   return (
     <div class="top-bar">
       <span class="brand">
@@ -33,7 +39,7 @@ export function Bar({ folder, view }: { folder: string; view: View }) {
       </span>
       <nav aria-label="Views">
         {links.map((link) => (
-          <a href={href(link.view)} aria-current={link.view === view || (view === 'job' && link.view === 'files') ? 'page' : undefined}>
+          <a href={href(link.view, pathOf(link.view))} aria-current={link.view === view || (view === 'job' && link.view === 'files') ? 'page' : undefined}>
             {link.name}
           </a>
         ))}
@@ -57,8 +63,10 @@ function ViewAt({ view, path }: Route) {
       return <JobView key={path} path={path} />;
     case 'jobs':
       return <JobsView path={path} />;
+    case 'overview':
+      return <OverviewView path={path} />;
     case 'program':
-      return <ProgramView path={path} />;
+      return <ProgramView key={/^\d*$/.test(path) ? '' : path} path={path} />;
     case 'lobes':
       return <LobesView path={path} />;
     case 'tap':
@@ -155,7 +163,12 @@ export function App({ config }: { config: ServeConfig }) {
   const [said, say] = useState('');
   const announce = (text: string) => say((before) => saidAfter(before, text));
   const received = useArrivals({ api, folder, refresh, announce });
+  const overviews = useOverviews(api, folder);
+  const chosen = useChosen(route, folder);
+  const known = readable(overviews);
+  const job = known.find(({ file }) => file === chosen) ?? null;
   const take = (files: File[]) => {
+    if (route.view === 'overview') return received.take(files, job ? belongsTo(api, job) : undefined);
     received.take(files);
     goTo('files');
   };
@@ -167,11 +180,13 @@ export function App({ config }: { config: ServeConfig }) {
         <a class="skip" href="#view">
           Skip to the content
         </a>
-        <Bar folder={config.folder} view={route.view} />
+        <Bar folder={config.folder} view={route.view} pathOf={(view) => pathIn(view, job, known)} />
         {trouble && <Trouble error={trouble} />}
         <main id="view" tabIndex={-1}>
           <ArrivalsContext value={received}>
-            <Shown {...route} />
+            <OverviewsContext value={overviews}>
+              <Shown {...route} />
+            </OverviewsContext>
           </ArrivalsContext>
         </main>
         <p class="quiet" role="status" aria-live="polite">

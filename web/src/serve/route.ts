@@ -1,7 +1,7 @@
 // Which view is shown: the address behind the #.
 import { useEffect, useState } from 'preact/hooks';
 
-export const views = ['files', 'jobs', 'job', 'program', 'lobes', 'tap', 'monitor'] as const;
+export const views = ['overview', 'files', 'jobs', 'job', 'program', 'lobes', 'tap', 'monitor'] as const;
 export type View = (typeof views)[number];
 
 export interface Route {
@@ -9,11 +9,11 @@ export interface Route {
   path: string; // of a file, the number of a job, or empty
 }
 
-/** "#/lobes/a/lobes.toml"; anything else is the list of files. */
+/** "#/lobes/a/lobes.toml"; anything else is the overview. */
 export function parseRoute(hash: string): Route {
   const [, name = '', path = ''] = /^#\/(\w+)(?:\/(.*))?$/s.exec(hash) ?? [];
   const view = views.find((known) => known === name);
-  if (!view) return { view: 'files', path: '' };
+  if (!view) return { view: 'overview', path: '' };
   return { view, path: path.split('/').map(decoded).join('/') };
 }
 

@@ -43,11 +43,11 @@ function shown(view: ComponentChildren, more: Partial<Serve> = {}): string {
 }
 
 describe('route', () => {
-  it.each(['files', 'job', 'program', 'lobes', 'tap'] as const)('%s comes back from its address', (view) => {
+  it.each(['overview', 'files', 'job', 'program', 'lobes', 'tap'] as const)('%s comes back from its address', (view) => {
     for (const path of ['', 'lobes.toml', 'a b/ü#1%.toml']) expect(parseRoute(href(view, path))).toEqual({ view, path });
   });
-  it('is the list of files for anything else', () => {
-    for (const hash of ['', '#lobes', '#/nothing/x', '#/lobes-x']) expect(parseRoute(hash)).toEqual({ view: 'files', path: '' });
+  it('is the overview for anything else', () => {
+    for (const hash of ['', '#lobes', '#/nothing/x', '#/lobes-x']) expect(parseRoute(hash)).toEqual({ view: 'overview', path: '' });
     expect(parseRoute('#/job/50%.toml')).toEqual({ view: 'job', path: '50%.toml' });
   });
 });

@@ -5,6 +5,7 @@ import { Bullets } from '../../parts';
 import { ApiError, asApiError, most_bytes, type Api } from '../api';
 import type { Serve } from '../context';
 import type { Inspection } from '../documents';
+import type { Belongs } from '../overview/belongs';
 import { bytesText, Button, FaultText, Panel } from '../pieces';
 import { href } from '../route';
 import { isEditable, kindNames } from '../verbs';
@@ -16,6 +17,7 @@ export interface Arrival {
   path: string; // in the folder
   inspection: Inspection | null; // not known yet
   error: ApiError | null;
+  note?: string | null; // what was done with it
 }
 
 async function send(api: Api, file: File, path: string): Promise<void> {
@@ -65,7 +67,7 @@ export interface Received {
 type Needs = Pick<Serve, 'api' | 'folder' | 'refresh' | 'announce'>;
 
 /** Files sent one after the other, so that a hundred do not stand in each other's way; they stay known whatever view is shown. */
-export function useArrivals({ api, folder, refresh, announce }: Needs): Received & { take: (files: File[]) => void } {
+export function useArrivals({ api, folder, refresh, announce }: Needs): Received & { take: (files: File[], belongs?: Belongs) => void } {
   const [arrivals, setArrivals] = useState<Arrival[]>([]);
   const [forms] = useState(() => new Map<string, HitsAnswers>());
   const names = useRef(new FreeNames());
@@ -74,23 +76,25 @@ export function useArrivals({ api, folder, refresh, announce }: Needs): Received
   listed.current = (folder?.files ?? []).map((file) => file.path);
   const set = (path: string, change: Partial<Arrival>) => setArrivals((all) => all.map((one) => (one.path === path ? { ...one, ...change } : one)));
   /** Sends a file, unless it lies there already, and asks what it is; whether it lies there then. */
-  const add = async (file: File | null, path: string): Promise<boolean> => {
+  const add = async (file: File | null, path: string, belongs?: Belongs): Promise<boolean> => {
     setArrivals((all) => withArrival(all, file?.name ?? path, path));
     let there = file === null;
     try {
       if (file) await send(api, file, path);
       there = true;
-      set(path, { inspection: await api.inspect(path) });
+      const inspection = await api.inspect(path);
+      set(path, { inspection });
+      if (belongs) set(path, { note: await belongs.settle(path, inspection.kind) });
     } catch (error) {
       set(path, { error: asApiError(error) });
     }
     return there;
   };
-  const addAll = async (files: File[]) => {
+  const addAll = async (files: File[], belongs?: Belongs) => {
     let received = 0;
     for (const file of files) {
-      const path = names.current.give(file.name, listed.current);
-      if (await add(file, path)) ++received;
+      const path = names.current.give(`${belongs?.folder(file.name) ?? ''}${file.name}`, listed.current);
+      if (await add(file, path, belongs)) ++received;
       else names.current.back(path);
     }
     refresh();
@@ -104,7 +108,7 @@ export function useArrivals({ api, folder, refresh, announce }: Needs): Received
       forms.clear();
     },
     forms,
-    take: (files) => void (last.current = last.current.then(() => addAll(files))),
+    take: (files, belongs) => void (last.current = last.current.then(() => addAll(files, belongs))),
   };
 }
 
@@ -118,14 +122,21 @@ export function useReceived(): Received {
   return useContext(Context);
 }
 
-function describe({ name, path, inspection, error }: Arrival) {
+/** Where it is, unless it is at the top under the name that it came with. */
+function placeText({ name, path }: Pick<Arrival, 'name' | 'path'>): string {
+  if (name === path) return '';
+  if (path.endsWith(`/${name}`)) return `, as ${path}`;
+  return `, as ${path} since there is a ${name} already`;
+}
+
+function describe({ name, path, inspection, error, note }: Arrival) {
   if (error) return <FaultText fault={error.fault} />;
   if (!inspection) return 'on its way';
-  const renamed = name === path ? '' : `, as ${path} since there is a ${name} already`;
   return (
     <>
       {kindNames[inspection.kind].toLowerCase()}
-      {renamed}
+      {placeText({ name, path })}
+      {note && `; ${note}`}
       {isEditable(path) && (
         <>
           ; <a href={href('job', path)}>open it</a>

@@ -30,6 +30,7 @@ function Actions({ file, verbs, describe }: FilesProps & { file: FileEntry }) {
       {name}
     </a>
   );
+  if (kind === 'job') links.push(link(href('overview', path), 'Overview'));
   if (kind === 'lobes' || kind === 'job') links.push(link(href('lobes', path), 'Lobes'));
   if (kind === 'hits') links.push(link(href('tap', path), 'Tap test'));
   if (kind === 'monitor') links.push(link(href('monitor', path), 'Monitor'));
@@ -76,7 +77,7 @@ export function FilesTable({ files, verbs, describe }: FilesProps & { files: Fil
 }
 
 /** Files are chosen here, or dropped anywhere on the page. */
-function FileInput() {
+export function FileInput() {
   const { take } = useServe();
   return (
     <label class="drop">

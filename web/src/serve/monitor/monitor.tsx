@@ -139,7 +139,7 @@ export function MonitorView({ path, feed = monitorFeed }: { path: string; feed?:
   const spindles = useMonitors(feed);
   const { ending, asked, error, press, end, keep } = useStop(spindles, path);
   const isNumber = /^\d+$/.test(path);
-  const selected = spindles?.find(({ id }) => (isNumber ? String(id) === path : path === '')) ?? null;
+  const selected = spindles?.find(({ id, config }) => (isNumber ? String(id) === path : path === '' || config === path)) ?? null;
   return (
     <View heading="Monitor" lead="Chatter while cutting, from recordings as if they were cut now or from streams. This page looks on: nothing is commanded and nothing is written.">
       <ErrorBox error={error} />

@@ -18,13 +18,14 @@ export function StartMonitor({ path }: { path: string }) {
   const { api, folder, announce } = useServe();
   const { busy, error, act } = useAction();
   const files = folder?.files ?? [];
-  const configs = files.filter(({ kind }) => kind === 'monitor');
+  const listed = files.filter(({ kind }) => kind === 'monitor').map((file) => file.path);
+  const configs = path === '' || listed.includes(path) ? listed : [path, ...listed]; // a job may have its tables
   const recordings = playable(files);
   const [chosenConfig, chooseConfig] = useState(path);
   const [chosenInput, chooseInput] = useState('');
   const [address, setAddress] = useState('');
   const [speed, setSpeed] = useState('1');
-  const config = chosenConfig || configs[0]?.path || '';
+  const config = chosenConfig || configs[0] || '';
   const input = chosenInput || recordings[0]?.path || stream;
   const start = async () => {
     const { id } = await api.startMonitor(config, input === stream ? address.trim() : input, input === stream ? 1 : Number(speed));
@@ -47,7 +48,7 @@ export function StartMonitor({ path }: { path: string }) {
           void act(start);
         }}
       >
-        <Select label="Settings" value={config} options={configs.map((file) => ({ value: file.path, name: file.path }))} choose={chooseConfig} />
+        <Select label="Settings" value={config} options={configs.map((file) => ({ value: file, name: file }))} choose={chooseConfig} />
         <Select label="Samples from" value={input} options={[...recordings.map((file) => ({ value: file.path, name: file.path })), { value: stream, name: 'a stream of a broker (MQTT)' }]} choose={chooseInput} />
         {input === stream ? (
           <Labelled label="Address (empty: mqtt.topic of the settings)">

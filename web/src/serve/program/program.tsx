@@ -56,13 +56,14 @@ function Others({ programs, shown }: { programs: LoadedProgram[]; shown: LoadedP
   );
 }
 
-/** Without a number: the newest, which stays while newer ones come. */
+/** `path`: the number of a run, a job whose newest run it is, or empty: the newest of all. What is shown stays while newer ones come. */
 export function ProgramView({ path }: { path: string }) {
   const { api, folder } = useServe();
-  const jobs = candidates(folder?.jobs ?? []);
+  const ofJob = /^\d*$/.test(path) ? null : path;
+  const jobs = candidates(folder?.jobs ?? []).filter(({ input }) => ofJob === null || input === ofJob);
   const kept = useRef<number | null>(null);
   const { programs, error, loading } = usePrograms(api, jobs, kept.current);
-  const wanted = path === '' ? kept.current : Number(path);
+  const wanted = path === '' || ofJob !== null ? kept.current : Number(path);
   const shown = wanted === null ? (loading ? undefined : programs[0]) : programs.find(({ id }) => id === wanted);
   if (shown) kept.current = shown.id;
   return (
@@ -72,14 +73,14 @@ export function ProgramView({ path }: { path: string }) {
       {!shown && (loading || folder === null) && <p class="notice">The jobs' programs are loading.</p>}
       {!shown && !loading && folder !== null && (
         <>
-          {path !== '' && <p class="notice">Job {path} has no program to show, or its data is not kept any longer: of the last two jobs it is.</p>}
+          {path !== '' && ofJob === null && <p class="notice">Job {path} has no program to show, or its data is not kept any longer: of the last two jobs it is.</p>}
           {programs.length > 0 && (
             <p>
               <a href={href('program', String(programs[0]!.id))}>{`Job ${programs[0]!.id}: ${programs[0]!.input}`}</a> has one.
             </p>
           )}
           <ErrorBox error={error} />
-          <ProgramStart none={programs.length === 0} />
+          <ProgramStart none={programs.length === 0} first={ofJob} />
         </>
       )}
     </View>

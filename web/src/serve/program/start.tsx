@@ -23,10 +23,10 @@ function Started({ job }: { job: Job }) {
   );
 }
 
-/** Runs one of the folder's jobs. `none`: no finished job has a program. */
-export function ProgramStart({ none }: { none: boolean }) {
+/** Runs one of the folder's jobs. `none`: no finished job has a program; `first`: the job to begin with. */
+export function ProgramStart({ none, first = null }: { none: boolean; first?: string | null }) {
   const { folder } = useServe();
-  const [path, setPath] = useState<string | null>(null);
+  const [path, setPath] = useState<string | null>(first);
   const [started, setStarted] = useState<number | null>(null);
   const files = (folder?.files ?? []).filter(({ kind }) => kind === 'job').map((file) => file.path);
   const chosen = path ?? files[0] ?? '';
