@@ -132,3 +132,9 @@ export function bytesText(bytes: number): string {
   const [size, unit] = bytes < 1e6 ? [bytes / 1e3, 'kB'] : [bytes / 1e6, 'MB'];
   return `${size < 10 ? size.toFixed(1) : size.toFixed(0)} ${unit}`;
 }
+
+/** A time of the server, as it is written here. */
+export function timeText(time: string): string {
+  const date = new Date(time);
+  return Number.isNaN(date.getTime()) ? time : date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
+}

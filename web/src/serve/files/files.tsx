@@ -3,7 +3,7 @@ import type { ComponentChildren } from 'preact';
 import { Table } from '../../parts';
 import { useServe } from '../context';
 import { fileKinds, type FileEntry, type Verb } from '../documents';
-import { bytesText, View } from '../pieces';
+import { bytesText, timeText, View } from '../pieces';
 import { href } from '../route';
 import { documentText, isEditable, isRecording, kindNames, runsOf } from '../verbs';
 import { Arrivals, useReceived } from './arrivals';
@@ -44,11 +44,6 @@ function Actions({ file, verbs, describe }: FilesProps & { file: FileEntry }) {
     );
   }
   return <span class="actions">{links}</span>;
-}
-
-function timeText(modified: string): string {
-  const time = new Date(modified);
-  return Number.isNaN(time.getTime()) ? modified : time.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 }
 
 export function FilesTable({ files, verbs, describe }: FilesProps & { files: FileEntry[] }) {

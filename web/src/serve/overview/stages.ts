@@ -1,5 +1,6 @@
 // Stages of a job in words, and where their next steps lead.
 import type { FolderState, Job } from '../documents';
+import { timeText } from '../pieces';
 import { href, type View } from '../route';
 import type { NextStep, Overview, Stage, StageName, StageState } from './documents';
 
@@ -111,11 +112,6 @@ export function remarksOf({ newer, guesses, state }: Stage): string[] {
   if (guesses > 0) remarks.push(guesses === 1 ? 'one value is a sample or a guess' : `${guesses} values are samples or guesses`);
   if (state === 'unreached') remarks.push('the report has the reason');
   return remarks;
-}
-
-export function timeText(time: string): string {
-  const date = new Date(time);
-  return Number.isNaN(date.getTime()) ? time : date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 }
 
 /** The stage that a job goes on with, in words. */
