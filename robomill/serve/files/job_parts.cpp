@@ -14,6 +14,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
+#include "robomill/io/confinement.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -38,7 +39,8 @@ fs::path file_of(const InvalidInput& error) {
   std::string where = error.parts().where;
   const std::size_t colon = where.rfind(':');
   const auto is_digit = [](unsigned char letter) { return std::isdigit(letter) != 0; };
-  if (colon != std::string::npos && std::all_of(where.begin() + static_cast<std::ptrdiff_t>(colon) + 1, where.end(), is_digit)) {
+  if (colon != std::string::npos &&
+      std::all_of(where.begin() + static_cast<std::ptrdiff_t>(colon) + 1, where.end(), is_digit)) {
     where.resize(colon);
   }
   return fs::path(where).lexically_normal();
@@ -81,7 +83,8 @@ constexpr std::array<KeyOfPart, 29> keys_of_parts = {{{"job.hits", &JobParts::hi
 
 /// Null of a key that belongs to no part.
 JobPart JobParts::*part_of_key(std::string_view key) {
-  const auto* const found = std::ranges::find_if(keys_of_parts, [&](const KeyOfPart& one) { return key.starts_with(one.begins); });
+  const auto* const found =
+      std::ranges::find_if(keys_of_parts, [&](const KeyOfPart& one) { return key.starts_with(one.begins); });
   return found == keys_of_parts.end() ? nullptr : found->part;
 }
 
@@ -169,7 +172,8 @@ class Reader {
   [[nodiscard]] bool has(std::string_view key) const {
     if (document_) return document_->has(key);
     return std::ranges::any_of(values_, [&](const io::TomlValue& value) {
-      return value.key.starts_with(key) && (value.key.size() == key.size() || value.key[key.size()] == '.' || value.key[key.size()] == '[');
+      return value.key.starts_with(key) &&
+             (value.key.size() == key.size() || value.key[key.size()] == '.' || value.key[key.size()] == '[');
     });
   }
   /// The file that a key names, the first of a list; empty: none.
@@ -187,7 +191,8 @@ class Reader {
       }
     }
     for (const io::TomlValue& value : document_ ? std::vector<io::TomlValue>() : values_) {
-      if (value.key == key && value.value.is_string()) out.push_back(job_.parent_path() / value.value.get<std::string>());
+      if (value.key == key && value.value.is_string())
+        out.push_back(job_.parent_path() / value.value.get<std::string>());
     }
     for (fs::path& file : out) file = file.lexically_normal();
     return out;
@@ -206,7 +211,8 @@ class Reader {
   /// An error goes to the part whose file or key it is about; else to `part`, or the whole job.
   void put(JobPart* part, const InvalidInput& error) {
     const fs::path file = file_of(error);
-    for (JobPart JobParts::*const one : {&JobParts::hits, &JobParts::frfs, &JobParts::modes, &JobParts::cut, &JobParts::robot, &JobParts::program, &JobParts::monitor}) {
+    for (JobPart JobParts::*const one : {&JobParts::hits, &JobParts::frfs, &JobParts::modes, &JobParts::cut,
+                                         &JobParts::robot, &JobParts::program, &JobParts::monitor}) {
       if (file != job_ && (parts_.*one).file == file) return keep((parts_.*one).error, error);
     }
     const std::string& field = error.parts().field;
@@ -234,11 +240,16 @@ class Reader {
     });
   }
   void require(const fs::path& file, std::string_view key) const {
+    if (is_there(file)) return;
+    if (document_ && document_->has(key)) throw document_->reject(key, no_such_file);
+    throw InvalidInput(InvalidInput::Parts{
+        .where = job_.string(), .field = std::string(key), .value = file.filename().string(), .rule = no_such_file});
+  }
+  /// @throws InvalidInput where it leads out of the folder that is served, whether it is there or not
+  static bool is_there(const fs::path& file) {
+    io::require_inside(file);
     std::error_code ignored;
-    if (fs::exists(file, ignored)) return;
-    constexpr const char* rule = "is missing: there is no such file";
-    if (document_ && document_->has(key)) throw document_->reject(key, rule);
-    throw InvalidInput(InvalidInput::Parts{.where = job_.string(), .field = std::string(key), .value = file.string(), .rule = rule});
+    return fs::exists(file, ignored);
   }
 
   void read_structure() {
@@ -250,10 +261,7 @@ class Reader {
       for (std::size_t i = 0; i < hits; ++i) {
         fs::path record;
         const std::string key = fmt::format("hits[{}].file", i);
-        std::error_code ignored;
-        if (document.path(key, record) && !fs::exists(record, ignored)) {
-          throw document.reject(key, "is missing: there is no such file");
-        }
+        if (document.path(key, record) && !is_there(record)) throw document.reject(key, no_such_file);
       }
       parts_.hits.guesses = guesses_of(parts_.hits.file, io::sample_values(document), true);
       parts_.hits.says = fmt::format("{} {}", hits, hits == 1 ? "hit" : "hits");
@@ -282,7 +290,8 @@ class Reader {
         assumed = cut.assumed;
       } else {
         const process::ForcesFile cut = process::read_forces(source_of(parts_.cut), process::ForcesJob::program);
-        parts_.cut.says = fmt::format("{} teeth, {:.4g} mm", cut.cutter.mill.teeth, cut.cutter.mill.diameter_m / units::mm);
+        parts_.cut.says =
+            fmt::format("{} teeth, {:.4g} mm", cut.cutter.mill.teeth, cut.cutter.mill.diameter_m / units::mm);
         assumed = cut.assumed;
       }
       parts_.cut.guesses = guesses_of(parts_.cut.file, assumed);
@@ -303,18 +312,20 @@ class Reader {
     });
   }
   void read_monitor(const fs::path& results) {
-    constexpr const char* name = "monitor.toml";
-    std::error_code ignored;
-    if (has("detector") || has("signal")) {
-      parts_.monitor.file = file_with(has("detector") ? "detector" : "signal");
-    } else if (fs::exists(job_.parent_path() / name, ignored)) {
-      parts_.monitor.file = job_.parent_path() / name;
-    } else if (!results.empty() && fs::exists(results / name, ignored)) {
-      parts_.monitor.file = results / name;
-    }
+    const fs::path beside = job_.parent_path() / "monitor.toml", planned = results / "monitor.toml";
+    attempt(&parts_.monitor, [&] {
+      if (has("detector") || has("signal")) {
+        parts_.monitor.file = file_with(has("detector") ? "detector" : "signal");
+      } else if (is_there(beside)) {
+        parts_.monitor.file = beside;
+      } else if (!results.empty() && is_there(planned)) {
+        parts_.monitor.file = planned;
+      }
+    });
     attempt(parts_.monitor, "detector", [&] {
       const monitor::MonitorFile file = monitor::read_monitor(parts_.monitor.file);
-      parts_.monitor.says = fmt::format("{} {}", file.columns.channels.size(), file.columns.channels.size() == 1 ? "channel" : "channels");
+      parts_.monitor.says = fmt::format("{} {}", file.columns.channels.size(),
+                                        file.columns.channels.size() == 1 ? "channel" : "channels");
       parts_.monitor.guesses = guesses_of(parts_.monitor.file, file.assumed);
     });
   }

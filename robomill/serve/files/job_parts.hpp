@@ -16,6 +16,9 @@ struct Guess {
   int line = 0;          ///< from 1
 };
 
+/// The rule of an error about a file that is not there; its value is what the document calls it.
+inline constexpr const char* no_such_file = "is missing: there is no such file";
+
 /// A part of a job as its documents have it, without any computation.
 struct JobPart {
   std::filesystem::path file = {};         ///< that gives it; empty: the job has no such part
@@ -30,12 +33,12 @@ struct JobParts {
   std::optional<InvalidInput> error = {};  ///< of the job's document as a whole
   std::vector<std::string> names = {};     ///< keys of [job]
   JobPart hits = {}, frfs = {}, modes = {}, cut = {}, robot = {}, program = {}, monitor = {};
-  JobPart limits = {};  ///< what the decision keeps: [spindle], [safety], [decide], …
+  JobPart limits = {};                                ///< what the decision keeps: [spindle], [safety], [decide], …
   std::vector<std::filesystem::path> frf_files = {};  ///< all of them, where they are given
-  bool predicted = false;      ///< FRFs are those of an assembly
-  bool recommends = false;     ///< a depth and a speed: the job has a chart of lobes
-  bool judges_blocks = false;  ///< of its program
-  bool decides = false;        ///< on its program
+  bool predicted = false;                             ///< FRFs are those of an assembly
+  bool recommends = false;                            ///< a depth and a speed: the job has a chart of lobes
+  bool judges_blocks = false;                         ///< of its program
+  bool decides = false;                               ///< on its program
 };
 
 /// Reads the documents that a job consists of; records, FRFs and programs are not opened. What is wrong with one is the

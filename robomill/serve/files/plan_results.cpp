@@ -23,15 +23,17 @@ using io::Json;
 
 constexpr const char* plan_name = "plan.json";
 constexpr std::uintmax_t longest_plan = std::uintmax_t{64} << 20;
-constexpr int most_beside = 1000;     // entries of a folder
-constexpr int enough_hits = 5;        // good ones in a direction
+constexpr int most_beside = 1000;  // entries of a folder
 constexpr double percent = 0.01;
 
 /// What an overview does not use, and what is long: it is not kept while the text is read.
 bool is_left_out(const std::string& key, int depth) {
-  constexpr std::array outermost = {"facts", "other_limits", "pairs", "limit_share", "cuts", "feed_directions", "forces", "alternatives"};
-  constexpr std::array inner = {"boundary", "stabilisation", "residuals", "uncertainty", "gamma_map", "spectral_radius", "convergence", "stretches"};
-  return (depth == 1 && std::ranges::find(outermost, key) != outermost.end()) || (depth == 2 && std::ranges::find(inner, key) != inner.end());
+  constexpr std::array outermost = {"facts", "other_limits",    "pairs",  "limit_share",
+                                    "cuts",  "feed_directions", "forces", "alternatives"};
+  constexpr std::array inner = {"boundary",  "stabilisation",   "residuals",   "uncertainty",
+                                "gamma_map", "spectral_radius", "convergence", "stretches"};
+  return (depth == 1 && std::ranges::find(outermost, key) != outermost.end()) ||
+         (depth == 2 && std::ranges::find(inner, key) != inner.end());
 }
 
 Json read_json_of(const fs::path& file) {
@@ -74,18 +76,11 @@ std::string counted(std::size_t count, std::string_view one) {
 }
 
 void read_hits(const Json& plan, PlanResults& out) {
-  const Json &hits = at(plan, {"frf", "hits"}), &directions = at(plan, {"hit_directions"}), &grades = at(plan, {"frf", "grades"});
+  const Json& hits = at(plan, {"frf", "hits"});
+  const Json& grades = at(plan, {"frf", "grades"});
   if (!hits.is_array() || hits.empty()) return;
-  std::size_t good = 0;
-  std::map<std::string, int> by_direction;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const bool accepted = at(hits[i], {"accepted"}) == true;
-    if (accepted) ++good;
-    const bool named = directions.is_array() && i < directions.size() && directions[i].is_string();
-    by_direction[named ? directions[i].get<std::string>() : ""] += accepted ? 1 : 0;
-  }
+  const auto good = std::ranges::count_if(hits, [](const Json& hit) { return at(hit, {"accepted"}) == true; });
   out.hits = fmt::format("{} of {} good", good, counted(hits.size(), "hit"));
-  out.few_hits = std::ranges::any_of(by_direction, [](const auto& one) { return one.second < enough_hits; });
   if (!grades.is_object()) return;
   for (const auto& [name, grade] : grades.items()) {
     out.frfs += fmt::format("{}{} {}", out.frfs.empty() ? "" : ", ", name, text_at(grade, {"grade"}));
@@ -96,7 +91,8 @@ void read_modes(const Json& plan, PlanResults& out) {
   const Json& modes = at(plan, {"modes", "modes"});
   if (!modes.is_array()) return;
   out.modes = counted(modes.size(), "mode");
-  if (const auto error = number_at(plan, {"modes", "fit", "relative_error"})) out.modes += fmt::format(", {:.1f} % off", *error / percent);
+  if (const auto error = number_at(plan, {"modes", "fit", "relative_error"}))
+    out.modes += fmt::format(", {:.1f} % off", *error / percent);
   out.modes_usable = !is_false(at(plan, {"modes", "fit", "usable"}));
 }
 
@@ -106,7 +102,9 @@ void read_lobes(const Json& plan, PlanResults& out) {
   const auto limit = number_at(plan, {"recommended", "window_limit_mm"});
   if (speed && limit) {
     const bool chatters = at(plan, {"recommended", "window_chatter_frequency_hz"}).is_number();
-    out.lobes = fmt::format(fmt::runtime(chatters ? "limit {:.3g} mm at {:.0f} rpm" : "no limit up to {:.3g} mm at {:.0f} rpm"), *limit, *speed);
+    out.lobes =
+        fmt::format(fmt::runtime(chatters ? "limit {:.3g} mm at {:.0f} rpm" : "no limit up to {:.3g} mm at {:.0f} rpm"),
+                    *limit, *speed);
     return;
   }
   const Json& limits = at(plan, {"lobes", "limit"});
@@ -134,7 +132,8 @@ void read_program(const Json& plan, PlanResults& out) {
 void read_decision(const Json& plan, PlanResults& out) {
   if (at(plan, {"decision"}).is_object()) {
     out.decided = text_at(plan, {"decision", "status"}) == "found";
-    const auto time = number_at(plan, {"decision", "decided", "total_time_s"}), before = number_at(plan, {"decision", "as_programmed", "total_time_s"});
+    const auto time = number_at(plan, {"decision", "decided", "total_time_s"}),
+               before = number_at(plan, {"decision", "as_programmed", "total_time_s"});
     const auto margin = number_at(plan, {"decision", "decided", "least_stability_margin"});
     if (!out.decided) out.decision = text_at(plan, {"decision", "reason"});
     if (out.decided && time) out.decision = fmt::format("{:.3g} s", *time);
@@ -142,7 +141,8 @@ void read_decision(const Json& plan, PlanResults& out) {
     if (out.decided && margin) out.decision += fmt::format("; least margin {:.0f} %", *margin / percent);
     return;
   }
-  const auto speed = number_at(plan, {"recommended", "spindle_speed_rpm"}), depth = number_at(plan, {"recommended", "axial_depth_mm"});
+  const auto speed = number_at(plan, {"recommended", "spindle_speed_rpm"}),
+             depth = number_at(plan, {"recommended", "axial_depth_mm"});
   if (speed && depth) {
     out.decision = fmt::format("{:.3g} mm at {:.0f} rpm", *depth, *speed);
   } else {
@@ -174,7 +174,8 @@ template <class F>
 void each_entry(const fs::path& folder, F&& f) {
   std::error_code error;
   fs::directory_iterator it(folder, error);
-  for (int seen = 0; !error && it != fs::directory_iterator() && seen < most_beside; it.increment(error), ++seen) f(*it);
+  for (int seen = 0; !error && it != fs::directory_iterator() && seen < most_beside; it.increment(error), ++seen)
+    f(*it);
 }
 
 /// The names of all jobs in a folder, without their endings.
@@ -182,14 +183,16 @@ std::vector<std::string> jobs_in(const fs::path& folder) {
   std::vector<std::string> out;
   each_entry(folder, [&](const fs::directory_entry& entry) {
     const fs::path& path = entry.path();
-    if (io::format_of(path) == io::Format::toml && kind_of_file(path).kind == "job") out.push_back(path.stem().string());
+    if (io::format_of(path) == io::Format::toml && kind_of_file(path).kind == "job")
+      out.push_back(path.stem().string());
   });
   return out;
 }
 
 /// "steel-plan" is named after "steel".
 bool is_named_after(const std::string& folder, const std::string& job) {
-  return folder.starts_with(job) && (folder.size() == job.size() || std::string_view("-_. ").find(folder[job.size()]) != std::string_view::npos);
+  return folder.starts_with(job) &&
+         (folder.size() == job.size() || std::string_view("-_. ").find(folder[job.size()]) != std::string_view::npos);
 }
 
 /// Folders beside a job that may be its plan's.

@@ -17,9 +17,8 @@ struct PlanResults {
   std::filesystem::file_time_type made = {};
   std::optional<InvalidInput> error = {};  ///< why its plan.json cannot be read
   std::string hits = {}, frfs = {}, modes = {}, lobes = {}, program = {}, decision = {};
-  bool few_hits = false;      ///< fewer good ones than a tap test is to have in a direction
-  bool modes_usable = true;   ///< they describe the FRFs
-  bool decided = true;        ///< conditions or a recommendation within every limit
+  bool modes_usable = true;  ///< they describe the FRFs
+  bool decided = true;       ///< conditions or a recommendation within every limit
 };
 
 /// The folder with the newest plan.json of a job: among the folders that its runs wrote to, and the folders beside it.

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "robomill/io/confinement.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/files/named_files.hpp"
@@ -28,15 +29,15 @@ bool is_missing(const InvalidInput& error) {
   return rule.starts_with("is missing") || rule.starts_with("must name") || rule.starts_with("goes with");
 }
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored);
-}
-
 /// The newest of some files that is newer than what was computed of them.
 std::optional<NewerInput> newer_of(const std::vector<fs::path>& files, fs::file_time_type made) {
   std::optional<NewerInput> out;
   for (const fs::path& file : files) {
+    try {
+      io::require_inside(file);
+    } catch (const InvalidInput&) {
+      continue;  // the part that names it says so
+    }
     std::error_code error;
     const fs::file_time_type time = fs::last_write_time(file, error);
     if (!error && time > made && (!out || time > out->time)) out = {.file = file, .time = time};
@@ -110,7 +111,7 @@ class Making {
     Stage out{.name = name, .says = part.says, .file = part.file, .error = part.error};
     if (part.error) {
       out.state = is_missing(*part.error) ? State::missing : State::wrong;
-      out.next = !part.file.empty() && !is_there(part.file) ? Step::add : Step::edit;
+      out.next = part.error->parts().rule == no_such_file ? Step::add : Step::edit;
     } else if (!part.file.empty()) {
       out.state = State::given;
       out.next = next;
@@ -139,8 +140,8 @@ class Making {
     }
   }
   /// What a run computes.
-  [[nodiscard]] Stage computed(StageName name, const std::string& says, const std::optional<NewerInput>& newer, bool reached,
-                               Step next) const {
+  [[nodiscard]] Stage computed(StageName name, const std::string& says, const std::optional<NewerInput>& newer,
+                               bool reached, Step next) const {
     Stage out{.name = name};
     std::string needs;
     if (out_.error) needs = out_.job.filename().string();
@@ -185,7 +186,8 @@ class Making {
     Stage modes = given(StageName::modes, parts_.modes, Step::none);
     const bool fitted = parts_.modes.file.empty() && (measured || !parts_.frfs.file.empty());
     if (fitted && !parts_.modes.error) {
-      modes = computed(StageName::modes, said(&PlanResults::modes), of_modes_, results_ == nullptr || results_->modes_usable, Step::report);
+      modes = computed(StageName::modes, said(&PlanResults::modes), of_modes_,
+                       results_ == nullptr || results_->modes_usable, Step::report);
     }
     out_.stages.push_back(std::move(modes));
   }
@@ -207,7 +209,8 @@ class Making {
     Stage decision = given(StageName::decision, {.file = {}, .error = parts_.limits.error}, Step::none);
     if (!parts_.limits.error && (parts_.recommends || parts_.decides)) {
       const bool decided = results_ == nullptr || results_->decided;
-      decision = computed(StageName::decision, said(&PlanResults::decision), of_all_, decided, parts_.decides ? Step::program : Step::report);
+      decision = computed(StageName::decision, said(&PlanResults::decision), of_all_, decided,
+                          parts_.decides ? Step::program : Step::report);
       if (decision.state == State::done) add_guesses(decision, parts_.limits);
     }
     out_.stages.push_back(std::move(decision));
@@ -220,7 +223,9 @@ class Making {
   }
   /// Results that cannot be read are the decision's, or the program's where nothing is decided.
   void put_unread(const InvalidInput& error) {
-    const auto is_of = [](const Stage& stage) { return stage.name == StageName::decision && stage.state != State::unused; };
+    const auto is_of = [](const Stage& stage) {
+      return stage.name == StageName::decision && stage.state != State::unused;
+    };
     auto found = std::ranges::find_if(out_.stages, is_of);
     if (found == out_.stages.end()) found = std::ranges::find(out_.stages, StageName::program, &Stage::name);
     if (is_blocking(*found)) return;
@@ -230,9 +235,11 @@ class Making {
   }
   /// What stops the job, then what is to be computed, then what to check.
   [[nodiscard]] std::optional<std::size_t> next() const {
-    constexpr std::array order = {State::missing, State::wrong, State::outdated, State::ready, State::unreached, State::guessed};
+    constexpr std::array order = {State::missing, State::wrong,     State::outdated,
+                                  State::ready,   State::unreached, State::guessed};
     for (const State state : order) {
-      const auto found = std::ranges::find_if(out_.stages, [state](const Stage& stage) { return stage.state == state && stage.next != Step::none; });
+      const auto found = std::ranges::find_if(
+          out_.stages, [state](const Stage& stage) { return stage.state == state && stage.next != Step::none; });
       if (found != out_.stages.end()) return static_cast<std::size_t>(found - out_.stages.begin());
     }
     return std::nullopt;
@@ -257,13 +264,15 @@ io::Json stage_object(const Stage& stage, const fs::path& root) {
                   {"error", stage.error ? error_object(*stage.error, root) : io::Json(nullptr)},
                   {"newer", nullptr},
                   {"next", nullptr}};
-  if (stage.newer) out["newer"] = {{"file", path_below(stage.newer->file, root)}, {"since", time_text(stage.newer->time)}};
+  if (stage.newer)
+    out["newer"] = {{"file", path_below(stage.newer->file, root)}, {"since", time_text(stage.newer->time)}};
   if (stage.next == Step::none) return out;
   io::Json file = out["file"], line = stage.line > 0 ? io::Json(stage.line) : io::Json(nullptr);
   if (stage.error && stage.next == Step::edit && !out["error"]["file"].is_null()) {
     file = out["error"]["file"];
     line = out["error"]["line"];
   }
+  if (stage.next == Step::add) file = out["error"]["value"];
   out["next"] = {{"does", name_in(stage_steps, stage.next)}, {"file", std::move(file)}, {"line", std::move(line)}};
   return out;
 }
@@ -285,13 +294,15 @@ io::Json overview_object(const Overview& overview, const fs::path& root) {
           {"results", path_below(overview.results, root)},
           {"names", overview.names},
           {"stages", std::move(stages)},
-          {"next", overview.next ? io::Json(name_in(stage_names, overview.stages[*overview.next].name)) : io::Json(nullptr)}};
+          {"next",
+           overview.next ? io::Json(name_in(stage_names, overview.stages[*overview.next].name)) : io::Json(nullptr)}};
 }
 
 HttpResponse answer_overview(const Folder& folder, PlanReader& plans, const std::string& body) {
   const io::Json asked = io::parse_json(body, "request");
   const fs::path job = folder.resolve(asked.at("file").get<std::string>());
-  if (!is_there(job)) return error_response(404, "there is no such file");
+  std::error_code ignored;
+  if (!fs::exists(job, ignored)) return error_response(404, "there is no such file");
   std::vector<fs::path> written;
   for (const io::Json& output : asked.at("written")) written.push_back(folder.resolve(output.get<std::string>()));
   return json_response(overview_object(overview_of(job, written, plans), folder.root()));

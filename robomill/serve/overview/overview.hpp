@@ -20,10 +20,9 @@ namespace robomill::serve {
 /// The stages of a job, in the order of the data.
 enum class StageName { hits, frfs, modes, cut, lobes, robot, program, decision, monitor };
 inline constexpr Name<StageName> stage_names[] = {
-    {"hits", StageName::hits},         {"frfs", StageName::frfs},   {"modes", StageName::modes},
-    {"cut", StageName::cut},           {"lobes", StageName::lobes}, {"robot", StageName::robot},
-    {"program", StageName::program},   {"decision", StageName::decision},
-    {"monitor", StageName::monitor}};
+    {"hits", StageName::hits},       {"frfs", StageName::frfs},         {"modes", StageName::modes},
+    {"cut", StageName::cut},         {"lobes", StageName::lobes},       {"robot", StageName::robot},
+    {"program", StageName::program}, {"decision", StageName::decision}, {"monitor", StageName::monitor}};
 
 enum class StageState {
   given,      ///< by documents that can be read
@@ -38,17 +37,17 @@ enum class StageState {
   unused      ///< no part of this job
 };
 inline constexpr Name<StageState> stage_states[] = {
-    {"given", StageState::given},       {"guessed", StageState::guessed}, {"missing", StageState::missing},
-    {"wrong", StageState::wrong},       {"ready", StageState::ready},     {"waiting", StageState::waiting},
-    {"done", StageState::done},         {"unreached", StageState::unreached},
-    {"outdated", StageState::outdated}, {"unused", StageState::unused}};
+    {"given", StageState::given},  {"guessed", StageState::guessed},     {"missing", StageState::missing},
+    {"wrong", StageState::wrong},  {"ready", StageState::ready},         {"waiting", StageState::waiting},
+    {"done", StageState::done},    {"unreached", StageState::unreached}, {"outdated", StageState::outdated},
+    {"unused", StageState::unused}};
 
 /// What to do next about a stage.
 enum class StageStep { none, edit, add, run, tap, lobes, program, report, monitor };
 inline constexpr Name<StageStep> stage_steps[] = {
-    {"none", StageStep::none}, {"edit", StageStep::edit},   {"add", StageStep::add},
-    {"run", StageStep::run},   {"tap", StageStep::tap},     {"lobes", StageStep::lobes},
-    {"program", StageStep::program}, {"report", StageStep::report},   {"monitor", StageStep::monitor}};
+    {"none", StageStep::none},       {"edit", StageStep::edit},     {"add", StageStep::add},
+    {"run", StageStep::run},         {"tap", StageStep::tap},       {"lobes", StageStep::lobes},
+    {"program", StageStep::program}, {"report", StageStep::report}, {"monitor", StageStep::monitor}};
 
 /// An input that is newer than what was computed of it.
 struct NewerInput {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/io/confinement.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "testing/support.hpp"
@@ -38,7 +39,8 @@ constexpr const char* modes = R"({"modes":[
 {"frequency_hz":900,"damping_ratio":0.02,"left":{"x":[1,0],"y":[0,0]},"right":{"x":[0,-8.8437e-4],"y":[0,0]}},
 {"frequency_hz":950,"damping_ratio":0.02,"left":{"x":[0,0],"y":[1,0]},"right":{"x":[0,0],"y":[0,-8.3782e-4]}}]})";
 
-Overview look(const test::Folder& place, const std::string& job = "job.toml", const std::vector<fs::path>& written = {}) {
+Overview look(const test::Folder& place, const std::string& job = "job.toml",
+              const std::vector<fs::path>& written = {}) {
   PlanReader plans;
   return overview_of(place.at(job), written, plans);
 }
@@ -52,7 +54,8 @@ std::string states(const Overview& overview) {
   std::string out;
   for (const Stage& one : overview.stages) {
     if (one.state == StageState::unused) continue;
-    out += (out.empty() ? "" : " ") + std::string(name_in(stage_names, one.name)) + "=" + std::string(name_in(stage_states, one.state));
+    out += (out.empty() ? "" : " ") + std::string(name_in(stage_names, one.name)) + "=" +
+           std::string(name_in(stage_states, one.state));
   }
   return out;
 }
@@ -92,7 +95,8 @@ TEST(Overview, OfAnExampleBeforeAndAfterItsPlan) {
   EXPECT_EQ(stage(after, StageName::hits).says, "1 of 1 hit good");
   EXPECT_EQ(stage(after, StageName::frfs).says, "xx usable");
   EXPECT_TRUE(stage(after, StageName::modes).says.ends_with("% off")) << stage(after, StageName::modes).says;
-  EXPECT_TRUE(stage(after, StageName::lobes).says.find(" mm at ") != std::string::npos) << stage(after, StageName::lobes).says;
+  EXPECT_TRUE(stage(after, StageName::lobes).says.find(" mm at ") != std::string::npos)
+      << stage(after, StageName::lobes).says;
   EXPECT_TRUE(stage(after, StageName::decision).says.ends_with(" rpm")) << stage(after, StageName::decision).says;
   EXPECT_EQ(after.next, static_cast<std::size_t>(StageName::hits));
 
@@ -148,15 +152,18 @@ TEST_F(OverviewOfModes, ABrokenDocumentIsTheStateOfItsStage) {
     const char *name, *content;
     StageName stage;
     StageState state;
-  } cases[] = {{"lobes.toml", "[tool\n", StageName::cut, StageState::wrong},
-               {"lobes.toml", "[tool]\nteeth = 0\n[lobes]\n", StageName::cut, StageState::wrong},
-               {"modes.json", "{", StageName::modes, StageState::wrong},
-               {"job.toml", "[job]\nlobes = \"lobes.toml\"\n", StageName::hits, StageState::missing},
-               {"job.toml", "[job]\nmodes = \"none.json\"\nlobes = \"lobes.toml\"\n", StageName::modes, StageState::missing},
-               {"job.toml", "[job]\nmodes = \"modes.json\"\n", StageName::cut, StageState::missing},
-               {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"none.toml\"\n", StageName::cut, StageState::missing},
-               {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\nprogram = \"part.ngc\"\n", StageName::program, StageState::missing},
-               {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[safety]\ndepth_margin = 2\n", StageName::decision, StageState::wrong}};
+  } cases[] = {
+      {"lobes.toml", "[tool\n", StageName::cut, StageState::wrong},
+      {"lobes.toml", "[tool]\nteeth = 0\n[lobes]\n", StageName::cut, StageState::wrong},
+      {"modes.json", "{", StageName::modes, StageState::wrong},
+      {"job.toml", "[job]\nlobes = \"lobes.toml\"\n", StageName::hits, StageState::missing},
+      {"job.toml", "[job]\nmodes = \"none.json\"\nlobes = \"lobes.toml\"\n", StageName::modes, StageState::missing},
+      {"job.toml", "[job]\nmodes = \"modes.json\"\n", StageName::cut, StageState::missing},
+      {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"none.toml\"\n", StageName::cut, StageState::missing},
+      {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\nprogram = \"part.ngc\"\n",
+       StageName::program, StageState::missing},
+      {"job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[safety]\ndepth_margin = 2\n",
+       StageName::decision, StageState::wrong}};
   for (const auto& one : cases) {
     const std::string before = [&] {
       std::ifstream in(place_.at(one.name));
@@ -170,6 +177,18 @@ TEST_F(OverviewOfModes, ABrokenDocumentIsTheStateOfItsStage) {
     EXPECT_EQ(found.next, static_cast<std::size_t>(one.stage)) << one.content << ": " << states(found);
     place_.file(one.name, before);
   }
+}
+
+TEST_F(OverviewOfModes, SaysNothingOfFilesOutsideTheFolder) {
+  fs::create_directories(place_.at("served"));
+  place_.file("served/lobes.toml", cut_tables);
+  place_.file("served/job.toml", "[job]\nmodes = \"../modes.json\"\nlobes = \"lobes.toml\"\n");
+  const io::Confinement confinement(place_.at("served"));
+  const Overview there = look(place_, "served/job.toml");
+  fs::remove(place_.at("modes.json"));
+  const Overview gone = look(place_, "served/job.toml");
+  EXPECT_EQ(stage(there, StageName::modes).state, StageState::wrong);
+  EXPECT_EQ(overview_object(there, place_.at("served")), overview_object(gone, place_.at("served")));
 }
 
 TEST_F(OverviewOfModes, AJobThatCannotBeReadSaysSo) {
@@ -193,7 +212,9 @@ TEST_F(OverviewOfModes, ResultsOfADamagedPlanAreAState) {
   EXPECT_EQ(stage(damaged, StageName::decision).next, StageStep::run);
   EXPECT_EQ(stage(damaged, StageName::lobes).state, StageState::ready);
   // Members of any other type are no results.
-  place_.file("out/plan.json", R"({"frf": 3, "modes": {"modes": 2}, "lobes": {"limit": [1, {"axial_depth_mm": "x"}]}, "recommended": [], "decision": "no", "blocks": null})");
+  place_.file(
+      "out/plan.json",
+      R"({"frf": 3, "modes": {"modes": 2}, "lobes": {"limit": [1, {"axial_depth_mm": "x"}]}, "recommended": [], "decision": "no", "blocks": null})");
   const Overview odd = look(place_);
   EXPECT_EQ(stage(odd, StageName::lobes).says, "no limit in the chart");
   EXPECT_EQ(stage(odd, StageName::decision).state, StageState::ready);
@@ -201,8 +222,9 @@ TEST_F(OverviewOfModes, ResultsOfADamagedPlanAreAState) {
 
 TEST_F(OverviewOfModes, APlanWithoutAnAnswerSaysWhy) {
   fs::create_directories(place_.at("out"));
-  place_.file("out/plan.json",
-              R"({"recommended": null, "reason": "no safe depth", "lobes": {"limit": [{"spindle_speed_rpm": 9000, "axial_depth_mm": 1.134}, {"spindle_speed_rpm": 5000, "axial_depth_mm": null}]}})");
+  place_.file(
+      "out/plan.json",
+      R"({"recommended": null, "reason": "no safe depth", "lobes": {"limit": [{"spindle_speed_rpm": 9000, "axial_depth_mm": 1.134}, {"spindle_speed_rpm": 5000, "axial_depth_mm": null}]}})");
   const Overview found = look(place_);
   EXPECT_EQ(stage(found, StageName::lobes).says, "lowest limit 1.13 mm at 9000 rpm");
   EXPECT_EQ(stage(found, StageName::decision).state, StageState::unreached);
@@ -212,11 +234,17 @@ TEST_F(OverviewOfModes, APlanWithoutAnAnswerSaysWhy) {
 TEST_F(OverviewOfModes, HasTheNumbersOfAProgram) {
   fs::create_directories(place_.at("out"));
   place_.file("part.ngc", "G0\n");
-  place_.file("cell.toml", "[robot]\nmodel = \"kuka-kr210-r2700\"\n[workpiece]\norigin_mm = [1500, 0, 800]\n[tool]\nlength_mm = 100\n");
+  place_.file(
+      "cell.toml",
+      "[robot]\nmodel = \"kuka-kr210-r2700\"\n[workpiece]\norigin_mm = [1500, 0, 800]\n[tool]\nlength_mm = 100\n");
   place_.file("forces.toml", cut_tables);
-  place_.file("job.toml", "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n[decide]\nfree = [\"feed\"]\n");
+  place_.file(
+      "job.toml",
+      "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n[decide]\nfree = [\"feed\"]\n");
   set_old(place_);
-  place_.file("out/plan.json", R"({"recommended": null, "reason": "", "blocks": {"cutting": 325, "unstable": 2}, "path": {"duration_s": 29.18, "violations": 0},
+  place_.file(
+      "out/plan.json",
+      R"({"recommended": null, "reason": "", "blocks": {"cutting": 325, "unstable": 2}, "path": {"duration_s": 29.18, "violations": 0},
  "decision": {"status": "found", "decided": {"total_time_s": 29.2, "least_stability_margin": 0.21}, "as_programmed": {"total_time_s": 41}}})");
   const Overview found = look(place_);
   EXPECT_EQ(stage(found, StageName::robot).says, "kuka-kr210-r2700");
@@ -227,7 +255,9 @@ TEST_F(OverviewOfModes, HasTheNumbersOfAProgram) {
 }
 
 TEST_F(OverviewOfModes, TakesTheMonitorOfTheJobOrOfItsPlan) {
-  constexpr const char* monitor = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\nteeth = 2\n[detector]\nkind = \"comb-cusum\"\n";
+  constexpr const char* monitor =
+      "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\nteeth = 2\n[detector]\nkind = "
+      "\"comb-cusum\"\n";
   fs::create_directories(place_.at("out"));
   place_.file("out/plan.json", R"({"recommended": null})");
   place_.file("out/monitor.toml", monitor);
