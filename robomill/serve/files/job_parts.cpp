@@ -121,7 +121,7 @@ class Reader {
 
   JobParts read(const fs::path& results) {
     open();
-    if (!document_ && values_.empty()) return std::move(parts_);
+    if (parts_.error && values_.empty()) return std::move(parts_);
     read_structure();
     read_cut();
     read_robot();
@@ -139,7 +139,7 @@ class Reader {
         if (value.key.starts_with("job.")) parts_.names.push_back(value.key.substr(4));
       }
     });
-    if (values_.empty()) return;
+    if (parts_.error) return;
     find_files();
     attempt(nullptr, [&] {
       document_ = std::make_unique<io::TomlFile>(io::TomlSource(job_));
@@ -165,8 +165,8 @@ class Reader {
     forces_ = part("job.forces", has("stock") ? "stock" : has("forces") ? "forces" : nullptr);
     parts_.recommends = has("job.lobes") || has("lobes");
     parts_.cut.file = parts_.recommends ? part("job.lobes", "lobes") : forces_;
-    parts_.judges_blocks = !forces_.empty() && !parts_.robot.file.empty() && !parts_.program.file.empty();
-    parts_.decides = parts_.judges_blocks && has("decide");
+    const bool judges_blocks = !forces_.empty() && !parts_.robot.file.empty() && !parts_.program.file.empty();
+    parts_.decides = judges_blocks && has("decide");
     parts_.limits.file = job_;
   }
   [[nodiscard]] bool has(std::string_view key) const {

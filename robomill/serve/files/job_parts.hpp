@@ -37,7 +37,6 @@ struct JobParts {
   std::vector<std::filesystem::path> frf_files = {};  ///< all of them, where they are given
   bool predicted = false;                             ///< FRFs are those of an assembly
   bool recommends = false;                            ///< a depth and a speed: the job has a chart of lobes
-  bool judges_blocks = false;                         ///< of its program
   bool decides = false;                               ///< on its program
 };
 
