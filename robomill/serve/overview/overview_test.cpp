@@ -156,6 +156,7 @@ TEST_F(OverviewOfModes, ABrokenDocumentIsTheStateOfItsStage) {
       {"lobes.toml", "[tool\n", StageName::cut, StageState::wrong},
       {"lobes.toml", "[tool]\nteeth = 0\n[lobes]\n", StageName::cut, StageState::wrong},
       {"modes.json", "{", StageName::modes, StageState::wrong},
+      {"job.toml", "[job]\n", StageName::hits, StageState::missing},
       {"job.toml", "[job]\nlobes = \"lobes.toml\"\n", StageName::hits, StageState::missing},
       {"job.toml", "[job]\nmodes = \"none.json\"\nlobes = \"lobes.toml\"\n", StageName::modes, StageState::missing},
       {"job.toml", "[job]\nmodes = \"modes.json\"\n", StageName::cut, StageState::missing},
