@@ -213,7 +213,7 @@ class Reader {
     const fs::path file = file_of(error);
     for (JobPart JobParts::*const one : {&JobParts::hits, &JobParts::frfs, &JobParts::modes, &JobParts::cut,
                                          &JobParts::robot, &JobParts::program, &JobParts::monitor}) {
-      if (file != job_ && (parts_.*one).file == file) return keep((parts_.*one).error, error);
+      if (!file.empty() && file != job_ && (parts_.*one).file == file) return keep((parts_.*one).error, error);
     }
     const std::string& field = error.parts().field;
     if (JobPart JobParts::*const of_key = part_of_key(field)) return keep((parts_.*of_key).error, error);
