@@ -40,5 +40,6 @@ export async function openJob({ page, fileOf, folder, problems, open, shot }) {
   }
   await shot('overview-dropped');
   writeFileSync(file, before);
+  if (!named) await page.until(`${state('Program')} === 'not used'`, 'the job is as before', 20);
   await button(page, 'Clear the list');
 }
