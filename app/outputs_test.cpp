@@ -17,7 +17,7 @@ class Outputs : public ProgramTest {
  protected:
   /// Small inputs of every verb.
   void SetUp() override {
-    for (const char* kind : {"job", "forces", "assembly", "monitor"}) {
+    for (const char* kind : {"lobes", "job", "forces", "assembly", "monitor"}) {
       ASSERT_EQ(robomill(std::string("init ") + kind + " --example").exit, 0) << kind;
     }
     ASSERT_EQ(robomill("init cell --robot ur-10e --example").exit, 0);

@@ -42,7 +42,7 @@ struct CellDynamics {
 [[nodiscard]] ROBOMILL_API CellDynamics cell_dynamics(const Cell& cell, Progress& progress = Progress::none());
 
 /// Whether the calibration of [[postures]] is kept beside the cell, in sentences; none of a cell without them.
-[[nodiscard]] std::vector<std::string> calibration_notes(const Cell& cell);
+[[nodiscard]] ROBOMILL_API std::vector<std::string> calibration_notes(const Cell& cell);
 
 /// Axes that a posture's modes are written in: the robot's base, or its flange before any mount.
 enum class PostureAxes { base, flange };

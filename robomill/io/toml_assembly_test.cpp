@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/error.hpp"
 #include "robomill/io/confinement.hpp"
 #include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -16,7 +17,17 @@ namespace robomill::io {
 namespace toml_assembly_test {
 
 using test::Folder;
-using test::rejection;
+
+/// What the InvalidInput that f throws says; empty where it throws none.
+template <class F>
+std::string rejection(F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
+}
 
 int integer(TomlFile& file, const char* key) {
   int out = 0;
@@ -27,6 +38,7 @@ int integer(TomlFile& file, const char* key) {
 // A shop keeps a file a tool: the job brings it in, and says what it adds.
 TEST(TomlAssembly, BringsInTheTablesOfOtherFiles) {
   const Folder folder;
+  std::filesystem::create_directory(folder.at("tools"));
   folder.file("tools/em12.toml", "include = \"coating.toml\"\n[tool]\nteeth = 4\nmodes = \"m.json\"\n");
   folder.file("tools/coating.toml", "[coating]\nlayers = 2\n");
   const auto job = folder.file("job.toml", "include = [\"tools/em12.toml\"]\n[tool]\nlength_mm = 80\n");
@@ -76,7 +88,7 @@ TEST(TomlAssembly, OneKeyHasOneValue) {
             std::string::npos);
   EXPECT_NE(teeth.find("job.toml:4 has 4"), std::string::npos) << "both lines: " << teeth;
   for (const char* more : {"[tool]\npitch_deg = [100, 120, 140]\n", "[tool]\npitch_deg = 120\n", "[tool]\nkind = 3\n",
-                           "[tool]\nkind = \"ball-end\"\n", "[[cuts]]\nfile = \"b\"\n", "tool = \"em12\"\n"}) {
+                           "[tool]\nkind = \"ball-end\"\n", "[[cuts]]\nfile = \"b\"\n"}) {
     EXPECT_NE(rejected(more).find("must have one value"), std::string::npos) << more;
   }
 }
@@ -107,6 +119,7 @@ TEST(TomlAssembly, IsBounded) {
   folder.file("40.toml", "[a]\nx = 1\n");
   EXPECT_NE(rejection([&] { TomlFile file(folder.at("0.toml")); }).find("includes more than 32 files"),
             std::string::npos);
+  std::filesystem::create_directory(folder.at("served"));
   const auto inside = folder.file("served/job.toml", "include = \"../40.toml\"\n");
   const Confinement confinement(inside.parent_path());
   EXPECT_NE(rejection([&] { TomlFile file(inside); }), "");
@@ -120,15 +133,15 @@ TEST(TomlTables, AReaderLeavesThoseOfOthersAlone) {
     return rejection([&] { static_cast<void>(file.done()); });
   };
   EXPECT_EQ(rejected("length_mm = 80\n[spindle]\nmax_speed_rpm = 9000\n[decide]\nfree = 3\n"), "");
-  EXPECT_NE(rejected("lenght_mm = 80\n").find("tool.lenght_mm is not known here"), std::string::npos);
-  EXPECT_NE(rejected("[spindel]\nmax_speed_rpm = 9000\n").find("spindel.max_speed_rpm is not known here"),
+  EXPECT_NE(rejected("lenght_mm = 80\n").find("tool.lenght_mm: is not known here"), std::string::npos);
+  EXPECT_NE(rejected("[spindel]\nmax_speed_rpm = 9000\n").find("spindel.max_speed_rpm: is not known here"),
             std::string::npos);
   EXPECT_TRUE(shared_key("robot.joint_max_jerk") && !shared_key("robot.jont_max_jerk"));
   // Whoever reads some of the keys of a joint reads all.
   TomlFile cell(TomlSource("cell.toml", "[robot]\njoint_stifness = [1]\njoint_max_jerk = [2]\n"));
   std::vector<double> jerk;
   cell.numbers("robot.joint_max_jerk", "jerk", 1.0, jerk);
-  EXPECT_NE(rejection([&] { static_cast<void>(cell.done()); }).find("robot.joint_stifness is not known here"),
+  EXPECT_NE(rejection([&] { static_cast<void>(cell.done()); }).find("robot.joint_stifness: is not known here"),
             std::string::npos);
 }
 

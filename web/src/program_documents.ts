@@ -45,7 +45,7 @@ export interface Program {
   blocks: Block[]; // of a long program a part, its first and last among them
 }
 
-type WholeBlocks = WrittenBlocks['blocks'];
+type WholeBlocks = Required<WrittenBlocks['blocks']>;
 /** Columns of blocks.json; a report leaves out those that say nothing. */
 export type BlockColumns = Partial<WholeBlocks> & Pick<WholeBlocks, 'block' | 'line' | 'x_mm' | 'y_mm' | 'z_mm'>;
 export type BlocksDocument = Omit<WrittenBlocks, 'blocks'> & { blocks: BlockColumns };

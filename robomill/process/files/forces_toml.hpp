@@ -39,7 +39,7 @@ struct ForcesFile : Cut {
 };
 
 /// The program that a document of a job names; empty: none.
-[[nodiscard]] std::filesystem::path program_of_job(const io::TomlSource& source);
+[[nodiscard]] ROBOMILL_API std::filesystem::path program_of_job(const io::TomlSource& source);
 
 /// The files of modes and coefficients that it names are read too.
 /// @throws InvalidInput with file, line, key and value

@@ -124,7 +124,13 @@ FileKind kind_of_json(const std::string& text) {
   Keys keys;
   io::Json::sax_parse(text, &keys, nlohmann::json::input_format_t::json, false);
   if (!keys.document.empty()) return kind_of_document(keys.document);
-  return kind_by(documents, keys.names);
+  FileKind known = kind_by(documents, keys.names);
+  if (known.kind != "other" || keys.names.empty()) return known;
+  // FRFs and modes may be written by others, who do not name the document.
+  const std::string& first = keys.names.front();
+  if (first == "frequency_hz" || first == "receptance_m_per_n") return {.kind = "frf"};
+  if (first == "modes" && text.find("\"right\"") != std::string::npos) return {.kind = "modes"};
+  return known;
 }
 
 /// The names of the columns, of the first line that is no comment.
