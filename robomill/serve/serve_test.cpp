@@ -109,7 +109,8 @@ TEST_F(Serve, StateListsTheFolder) {
 
 TEST_F(Serve, GivesTheOverviewOfAJobBeforeAndAfterItsRun) {
   const auto stage = [&](const char* name) {
-    for (const json& one : get("/api/overview?file=job.toml")["stages"]) {
+    const json overview = get("/api/overview?file=job.toml");
+    for (const json& one : overview["stages"]) {
       if (one["stage"] == name) return one;
     }
     return json();

@@ -1,5 +1,5 @@
 // A blocks.json of four blocks, for tests: in air, stable, unstable, without a limit.
-import type { BlocksDocument } from '#schema/blocks';
+import type { BlocksDocument } from './documents';
 
 const unknown = [null, null, null, null];
 
