@@ -125,6 +125,18 @@ struct TomlFile::State {
   [[nodiscard]] bool is_of_others(const std::string& table) const {
     return is_known_table(table) && !known.contains(table) && !asked_below(table, ".") && !asked_below(table, "[");
   }
+  /// Whether a key was asked for, or a table around it as a whole.
+  [[nodiscard]] bool is_asked(std::string_view key) const {
+    const auto below = [&](std::string_view part) {
+      return asked_below(std::string(part), ".") || asked_below(std::string(part), "[");
+    };
+    if (known.contains(key) || below(key)) return true;
+    for (std::size_t end = key.find_last_of(".["); end != std::string_view::npos; end = key.find_last_of(".[")) {
+      key = key.substr(0, end);
+      if (known.contains(key) && !below(key)) return true;
+    }
+    return false;
+  }
   /// Whether another reader of its table knows a key that this one did not ask for.
   [[nodiscard]] bool is_others_key(const std::string& key) const {
     const std::optional<SharedKey> shared = shared_key(key);
@@ -300,17 +312,7 @@ const std::vector<TomlText>& TomlFile::texts() const {
 
 bool TomlFile::took(std::string_view key) const {
   const auto is_set = [&](const std::string& set) { return set.starts_with(key); };
-  if (std::ranges::any_of(state_->set_keys, is_set)) return false;
-  const auto below = [&](std::string_view part) {
-    return state_->asked_below(std::string(part), ".") || state_->asked_below(std::string(part), "[");
-  };
-  if (state_->known.contains(key) || below(key)) return true;
-  // A table that was asked for as a whole has all of its keys.
-  for (std::size_t end = key.find_last_of(".["); end != std::string_view::npos; end = key.find_last_of(".[")) {
-    key = key.substr(0, end);
-    if (state_->known.contains(key) && !below(key)) return true;
-  }
-  return false;
+  return std::ranges::none_of(state_->set_keys, is_set) && state_->is_asked(key);
 }
 
 void TomlFile::skip(std::string_view key) {
@@ -488,7 +490,7 @@ std::vector<std::string> TomlFile::done() const {
 }
 
 void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
-  if (is_of_others(key) || (!known.contains(key) && is_others_key(key))) return;
+  if (is_of_others(key) || (!is_asked(key) && is_others_key(key))) return;
   if (const toml::table* table = node.as_table()) {
     for (const auto& [name, value] : *table)
       compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);
