@@ -299,7 +299,13 @@ void CommandLine::Parts::add(VerbGroup group) {
 
 void CommandLine::Parts::require_input() {
   verb = &chosen->chosen();
-  if (!verb->input.required || chosen->find(verb->input.name)->given()) return;
+  const Slot* const input = chosen->find(verb->input.name);
+  const bool given = input != nullptr && input->given();
+  for (const VerbOption& option : verb->options) {
+    const bool of_job = option.job_gives && given && !input->text.ends_with(".toml");
+    if (of_job && !chosen->find(option.name)->given()) throw CLI::RequiredError(command_line_name(option));
+  }
+  if (!verb->input.required || given) return;
   throw CLI::RequiredError(std::string(verb->input.name) + ", or " + std::string(key_of(*chosen->group.verbs.back())));
 }
 

@@ -153,7 +153,9 @@ TEST_F(ServeJobs, AJobHasItsOwnMemory) {
   EXPECT_NE(text.find("of memory, more than 100 MB"), std::string::npos) << text;
   EXPECT_TRUE(text.ends_with("if it is meant, run it on the command line with --allow-large")) << text;
   // What no estimate foresees.
-  write("served/long.toml", test::slot_lobes + std::string("# ") + std::string(60'000'000, '-') + "\n");
+  std::string ones;
+  for (int i = 0; i < 5'000'000; ++i) ones += "1,";
+  write("served/long.toml", test::slot_lobes + std::string("ones = [") + ones + "]\n");
   const json ended = end_of(run("long.toml"));
   EXPECT_EQ(ended["state"], "failed") << ended;
   EXPECT_NE(ended["error"]["text"].get<std::string>().find("not enough memory"), std::string::npos) << ended;
