@@ -324,6 +324,9 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   out.path = file.file_of_part("job.lobes", "lobes");
   const bool gives_structure = std::ranges::any_of(structure_keys, [&](const char* key) { return file.has(key); });
   if (gives_structure && file.has("job")) out.job = path;
+  if (!file.has("job") && (file.has("spindle.max_speed_rpm") || file.has("spindle.min_speed_rpm"))) {
+    out.notes.emplace_back("[spindle] takes no part in a chart without [job]: lobes.spindle_speed_rpm is its range.");
+  }
   cutting::Cutter cutter;
   process::read_cutter(file, cutter);
   out.problem.milling.tool = cutter.mill;

@@ -495,6 +495,14 @@ TEST(LobesToml, RejectsWhatItsOwnKeysContradict) {
       static_cast<void>(read_lobes(folder.file("lobes.toml", with("teeth = 2", "teeth = 2\ncutting_height_mm = 30")))));
 }
 
+// A table of another reader takes no part, and the file says so where it looks as if it did.
+TEST(LobesToml, SaysThatASpindleNeedsAJob) {
+  const test::Folder folder;
+  const LobesFile read = read_lobes(folder.file("lobes.toml", good + "[spindle]\nmax_speed_rpm = 9000\n"));
+  ASSERT_FALSE(read.notes.empty());
+  EXPECT_NE(read.notes.front().find("[spindle] takes no part in a chart without [job]"), std::string::npos);
+}
+
 TEST(LobesToml, AnswersSynonymsWithTheRightKey) {
   const test::Folder folder;
   const auto say = [&](const std::string& old_text, const std::string& new_text) {
