@@ -1,5 +1,5 @@
 // Curves over equal runs of time, of which the lowest and the highest value are known; null where there was none.
-import type { Num } from './documents';
+import type { Num } from './parts_of_documents';
 
 export interface Band {
   low: Num[];

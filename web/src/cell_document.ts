@@ -1,5 +1,6 @@
 // check.json: what robomill found of a robot cell.
-import type { Assumption, Num } from './documents';
+import type { Num } from './parts_of_documents';
+import type { Assumption } from './verb_documents';
 
 export type Vector = [number, number, number];
 /** Of a joint that can be anywhere: null. */

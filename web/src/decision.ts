@@ -1,5 +1,5 @@
 // What plan.json says of the decision on a program: "decision".
-import type { Num } from './documents';
+import type { Num } from './parts_of_documents';
 
 /** A limit that a program violates, in the block where it is worst. */
 export interface Violation {

@@ -4,6 +4,7 @@ import type { LobesDocument } from '#schema/lobes';
 import type { SweepDocument } from '#schema/sweep';
 import type { CellDocument } from './cell_document';
 import type { Decision } from './decision';
+import type { Fact, Num, Owner, Remarks } from './parts_of_documents';
 import type { BlocksDocument, Program, SmoothDocument } from './program_documents';
 import type { Monitor, MotionDocument } from './recorded';
 import type {
@@ -17,17 +18,11 @@ import type {
   VibrationDocument,
 } from './verb_documents';
 
+export * from './parts_of_documents';
 export * from './program_documents';
 export * from './recorded';
 export * from './verb_documents';
 export type { ComparisonDocument, LobesDocument, SweepDocument };
-export type Num = number | null;
-
-export interface Fact {
-  label: string;
-  value: string;
-  meaning?: string;
-}
 
 export type Verdict = 'stable' | 'borderline' | 'chatter';
 /** The limit at one speed. */
@@ -35,9 +30,6 @@ export type LimitRow = LobesDocument['limit'][number];
 export type LobesPoint = LobesDocument['points'][number];
 /** A point that was asked for; in a sweep the parameter's value is there in place of the depth. */
 export type ChartPoint = SweepDocument['points'][number] & Partial<Pick<LobesPoint, 'axial_depth_mm'>>;
-/** The structure that a mode belongs to. */
-export type Owner = NonNullable<LobesPoint['mode_of']>;
-
 /** Of the tip about its mean position. */
 export interface ForcedVibration {
   amplitude_um: Num;
@@ -212,13 +204,6 @@ export interface Revolution {
   vibrating_fx_n?: number[]; // from the time-domain simulation
   vibrating_fy_n?: number[];
   vibrating_fz_n?: number[];
-}
-
-/** What a document says in words. */
-export interface Remarks {
-  facts: Fact[];
-  warnings: string[];
-  notes: string[];
 }
 
 /** forces.json */

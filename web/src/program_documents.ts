@@ -1,6 +1,6 @@
 // A program: the forces and the stability of its blocks, and its smoothed trajectory.
 import type { BlocksDocument as WrittenBlocks } from '#schema/blocks';
-import type { Num } from './documents';
+import type { Num } from './parts_of_documents';
 
 /** A block of a program: position, length and time at its end. */
 export interface Block {

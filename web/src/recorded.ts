@@ -1,6 +1,6 @@
 // What is recorded for the page alone: a monitored recording, a smoothed program's motion.
 import type { Band } from './bands';
-import type { Num, Owner, Remarks } from './documents';
+import type { Num, Owner, Remarks } from './parts_of_documents';
 
 /** One point after another in the work frame. */
 export interface Places {

@@ -1,6 +1,6 @@
 // What single verbs find, as robomill writes it into the page: shop units, null for "none".
 import type { Band } from './bands';
-import type { Num, Owner } from './documents';
+import type { Num, Owner } from './parts_of_documents';
 
 /** What was taken because nobody said it; key and file are null where nothing can be set. */
 export interface Assumption {
