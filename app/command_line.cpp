@@ -101,27 +101,6 @@ struct Slot {
   }
 };
 
-const char* type_name(Takes takes) {
-  switch (takes) {
-    case Takes::whole:
-      return "N";
-    case Takes::number:
-    case Takes::numbers:
-      return "NUMBER";
-    case Takes::file:
-    case Takes::files:
-    case Takes::new_file:
-      return "FILE";
-    case Takes::new_folder:
-      return "FOLDER";
-    case Takes::point:
-    case Takes::points:
-      return "RPM,MM";
-    default:
-      return "TEXT";
-  }
-}
-
 /// One verb of the parser.
 struct Subcommand {
   VerbGroup group = {};
@@ -149,7 +128,7 @@ void Subcommand::add(const VerbOption& option, bool follows, bool required) {
   const bool split = option.takes == Takes::numbers || option.takes == Takes::texts;
   const bool several = split || option.takes == Takes::files || option.takes == Takes::points;
   slot.parsed = several ? app->add_option(name, slot.list, meaning) : app->add_option(name, slot.text, meaning);
-  slot.parsed->type_name(type_name(option.takes))->required(required);
+  slot.parsed->type_name(value_name(option.takes))->required(required);
   if (split) slot.parsed->delimiter(',');
   if (option.takes == Takes::files && !follows) slot.parsed->allow_extra_args(false);
   if (option.count != 0) slot.parsed->expected(static_cast<int>(option.count));
@@ -195,6 +174,27 @@ const Verb& Subcommand::chosen() {
 }
 
 }  // namespace
+
+const char* value_name(Takes takes) {
+  switch (takes) {
+    case Takes::whole:
+      return "N";
+    case Takes::number:
+    case Takes::numbers:
+      return "NUMBER";
+    case Takes::file:
+    case Takes::files:
+    case Takes::new_file:
+      return "FILE";
+    case Takes::new_folder:
+      return "FOLDER";
+    case Takes::point:
+    case Takes::points:
+      return "RPM,MM";
+    default:
+      return "TEXT";
+  }
+}
 
 std::string_view key_of(const Verb& verb) {
   return verb.name.substr(std::min(verb.name.find("--"), verb.name.size()));
@@ -302,8 +302,8 @@ void CommandLine::Parts::require_input() {
   const Slot* const input = chosen->find(verb->input.name);
   const bool given = input != nullptr && input->given();
   for (const VerbOption& option : verb->options) {
-    const bool of_job = option.job_gives && given && !input->text.ends_with(".toml");
-    if (of_job && !chosen->find(option.name)->given()) throw CLI::RequiredError(command_line_name(option));
+    if (!given || chosen->find(option.name)->given()) continue;
+    if (jobs::is_required(option, input->text)) throw CLI::RequiredError(command_line_name(option));
   }
   if (!verb->input.required || given) return;
   throw CLI::RequiredError(std::string(verb->input.name) + ", or " + std::string(key_of(*chosen->group.verbs.back())));
@@ -361,7 +361,8 @@ Asked CommandLine::asked() const {
                 .quiet = flag_of("quiet"),
                 .threads = static_cast<int>(whole_in(text_of("threads")).value_or(0)),
                 .allow_large = flag_of("allow_large")};
-  out.job.options = checked_options(verb, jobs::AskedBy::command_line, options);
+  const std::filesystem::path input = out.job.inputs.empty() ? "" : out.job.inputs.front();
+  out.job.options = checked_options(verb, jobs::AskedBy::command_line, input, options);
   if (!out.common.to_stdout()) out.job.output = out.common.output;
   out.job.wants_json = out.common.to_stdout();
   out.job.wants_curves = is_html(out.common.report);

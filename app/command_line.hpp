@@ -26,6 +26,9 @@ struct VerbGroup {
 /// The option that makes a verb of a plain one: "--tools".
 [[nodiscard]] std::string_view key_of(const jobs::Verb& verb);
 
+/// What one value of an option is called in help: "FILE".
+[[nodiscard]] const char* value_name(jobs::Takes takes);
+
 /// Options that every verb takes; those after the first ones, verbs that compute.
 [[nodiscard]] const std::vector<jobs::VerbOption>& common_options();
 

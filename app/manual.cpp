@@ -33,31 +33,17 @@ std::string roff(std::string_view text) {
 }
 
 /// "--method WORD": what stands behind an option.
-std::string_view value_name(Takes takes) {
+std::string values_name(Takes takes) {
   switch (takes) {
     case Takes::flag:
       return "";
-    case Takes::whole:
-      return "N";
-    case Takes::number:
-      return "NUMBER";
-    case Takes::numbers:
-      return "NUMBER,…";
-    case Takes::texts:
-      return "TEXT,…";
     case Takes::word:
       return "WORD";
-    case Takes::file:
-    case Takes::files:
-    case Takes::new_file:
-      return "FILE";
-    case Takes::new_folder:
-      return "FOLDER";
-    case Takes::point:
-    case Takes::points:
-      return "RPM,MM";
+    case Takes::numbers:
+    case Takes::texts:
+      return fmt::format("{},…", value_name(takes));
     default:
-      return "TEXT";
+      return value_name(takes);
   }
 }
 
@@ -70,7 +56,7 @@ std::string sentence(const VerbOption& option) {
 
 std::string option_entry(const VerbOption& option) {
   return fmt::format(".TP\n\\fB{}\\fR {}\n{}\n", roff(command_line_name(option)),
-                     option.takes == Takes::flag ? "" : fmt::format("\\fI{}\\fR", value_name(option.takes)),
+                     option.takes == Takes::flag ? "" : fmt::format("\\fI{}\\fR", values_name(option.takes)),
                      sentence(option));
 }
 

@@ -1,12 +1,7 @@
 #pragma once
 // For .cpp files inside the library, as json.hpp.
-#include <Eigen/Core>
-#include <array>
-#include <complex>
 #include <cstddef>
-#include <filesystem>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,61 +12,11 @@
 #include "robomill/base/names.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/key_unit.hpp"
+#include "robomill/io/schema_values.hpp"
+#include "robomill/io/table_info.hpp"
 #include "robomill/io/toml_file.hpp"
 
 namespace robomill::io {
-
-/// What a key holds.
-enum class Holds { number, integer, boolean, text, path, word, complex, table };
-
-/// What a table is for.
-enum class Use {
-  read,    ///< by people, or by both: keys have defaults
-  written  ///< by this program alone
-};
-
-/// What a value must keep, in the unit of its key.
-struct Rule {
-  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
-  bool above = false, below = false;  ///< the bound itself is excluded
-  std::size_t entries = 0;            ///< of a list; 0: any number
-  std::string hint = {};              ///< the likely cause of a value that does not
-  [[nodiscard]] bool keeps(double value) const;
-  /// "must be > 0", "must lie between 0 and 1".
-  [[nodiscard]] std::string text() const;
-};
-
-struct TableInfo;
-
-/// A key of a table, as schemas, forms and docs show it.
-struct Key {
-  std::string name = {};
-  Holds holds = Holds::text;
-  int lists = 0;           ///< 1: a list of them, 2: a list of lists
-  bool named = false;      ///< an object of them, by names that differ from document to document
-  bool or_one = false;     ///< in place of a list one value, for all of its entries
-  bool required = false;   ///< a reader rejects a table without it; a writer always writes it
-  bool nullable = false;   ///< null: not known, none; of a list its entries
-  bool null_list = false;  ///< the list itself may be null
-  Rule rule = {};
-  std::vector<std::string> words = {};  ///< of Holds::word
-  const TableInfo* table = nullptr;     ///< of Holds::table
-  std::string meaning = {};             ///< a phrase
-  std::string hint = {};                ///< what a reader says where it is missing
-  Json default_value = nullptr;         ///< null: none
-  [[nodiscard]] std::string unit() const { return key_unit(name).text; }
-};
-
-/// A table: a document, or a part of one.
-struct TableInfo {
-  std::string name = {};     ///< "lobes", "tool"
-  std::string meaning = {};  ///< a phrase
-  std::vector<Key> keys = {};
-  Use use = Use::read;
-  int version = 0;  ///< of a document: how often its keys have changed their meaning, from 1; 0: no document of its own
-  /// "lobes/1", as a document names itself in its key `document`.
-  [[nodiscard]] std::string document() const { return name + "/" + std::to_string(version); }
-};
 
 template <class T>
 class Schema;
@@ -154,152 +99,6 @@ struct Row {
     return *this;
   }
 };
-
-namespace detail {
-
-template <class M>
-struct Holding;  // what a member of type M is in a file
-template <>
-struct Holding<double> {
-  static constexpr Holds holds = Holds::number;
-  static constexpr int lists = 0;
-};
-template <class M>
-requires std::is_integral_v<M>
-struct Holding<M> {
-  static constexpr Holds holds = std::is_same_v<M, bool> ? Holds::boolean : Holds::integer;
-  static constexpr int lists = 0;
-};
-template <>
-struct Holding<std::string> {
-  static constexpr Holds holds = Holds::text;
-  static constexpr int lists = 0;
-};
-template <>
-struct Holding<std::string_view> : Holding<std::string> {};
-template <>
-struct Holding<const char*> : Holding<std::string> {};
-template <>
-struct Holding<std::filesystem::path> {
-  static constexpr Holds holds = Holds::path;
-  static constexpr int lists = 0;
-};
-template <>
-struct Holding<std::complex<double>> {
-  static constexpr Holds holds = Holds::complex;
-  static constexpr int lists = 0;
-};
-template <class M>
-struct Holding<std::optional<M>> : Holding<M> {};
-template <class M>
-struct Holding<std::vector<M>> {
-  static constexpr Holds holds = Holding<M>::holds;
-  static constexpr int lists = Holding<M>::lists + 1;
-};
-template <class M>
-struct Holding<std::vector<std::pair<std::string, M>>> : Holding<M> {};
-template <class M, std::size_t n>
-struct Holding<std::array<M, n>> : Holding<std::vector<M>> {};
-template <int n>
-struct Holding<Eigen::Matrix<double, n, 1>> : Holding<std::vector<double>> {};
-template <>
-struct Holding<Eigen::MatrixXd> : Holding<std::vector<std::vector<double>>> {};
-
-/// Whether values stand by names that differ from document to document.
-template <class M>
-inline constexpr bool is_named = false;
-template <class M>
-inline constexpr bool is_named<std::vector<std::pair<std::string, M>>> = true;
-
-/// What a function of an object takes and gives.
-template <class F>
-struct Getter : Getter<decltype(&F::operator())> {};
-template <class F, class R, class T>
-struct Getter<R (F::*)(T) const> {
-  using Object = std::remove_cvref_t<T>;
-  using Value = std::remove_cvref_t<R>;
-};
-
-/// Of each kind of member how it is read and written.
-/// @throws InvalidInput by TomlFile::reject where a value breaks the rule
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                double& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                int& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                bool& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::string& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::filesystem::path& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::vector<double>& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::vector<int>& out);
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::vector<std::string>& out);
-template <class M>
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::optional<M>& out) {
-  M value{};
-  if (!read_value(file, path, member, factor, key, value)) return false;
-  out = std::move(value);
-  return true;
-}
-template <class M, std::size_t n>
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::array<M, n>& out) {
-  std::vector<M> values;
-  if (!read_value(file, path, member, factor, key, values)) return false;
-  if (values.size() != n) throw file.reject(path, "must hold " + std::to_string(n) + " numbers");
-  std::copy(values.begin(), values.end(), out.begin());
-  return true;
-}
-
-/// How numbers are shown.
-struct Shown {
-  double factor = 1.0;
-  bool exact = false;
-};
-Json write_value(double value, const Shown& shown);
-Json write_value(const std::complex<double>& value, const Shown& shown);
-Json write_value(const std::filesystem::path& value, const Shown& shown);
-/// A row of the matrix a list.
-Json write_value(const Eigen::MatrixXd& values, const Shown& shown);
-template <class M>
-requires std::is_integral_v<M> Json write_value(M value, const Shown& /*shown*/) {
-  return value;
-}
-inline Json write_value(const std::string& value, const Shown& /*shown*/) {
-  return value;
-}
-inline Json write_value(std::string_view value, const Shown& /*shown*/) {
-  return value;
-}
-inline Json write_value(const char* value, const Shown& /*shown*/) {
-  return value;
-}
-template <class M>
-Json write_value(const std::optional<M>& value, const Shown& shown) {
-  return value ? write_value(*value, shown) : Json();
-}
-/// An object of values by their names.
-template <class M>
-Json write_value(const std::vector<std::pair<std::string, M>>& named, const Shown& shown) {
-  Json out = Json::object();
-  for (const auto& [name, value] : named) out[name] = write_value(value, shown);
-  return out;
-}
-template <class List>
-requires requires(const List& list) {
-  list.begin();
-} &&(!std::is_convertible_v<List, std::string_view>)Json write_value(const List& list, const Shown& shown) {
-  Json out = Json::array();
-  for (const auto& value : list) out.push_back(write_value(value, shown));
-  return out;
-}
-
-}  // namespace detail
 
 /// A key that a member holds. Its unit is that of the key's name (key_unit), which gives the factor and the member's
 /// name in errors; it is readable where the member's type is one that TOML has.
@@ -616,11 +415,5 @@ template <class T, class U, class Part>
 
 /// A table of what was assumed: `assumed` of every document.
 [[nodiscard]] const Schema<Assumption>& assumption_table();
-
-/// The JSON Schema (draft 2020-12) of a document; of a table that is none, without its `document` key.
-[[nodiscard]] Json json_schema(const TableInfo& document);
-
-/// The table of docs/formats.md: "| `key` | unit, values | default | meaning |", nested tables by their paths.
-[[nodiscard]] std::string markdown_table(const TableInfo& table);
 
 }  // namespace robomill::io

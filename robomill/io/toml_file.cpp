@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <span>
 
 #include "robomill/io/key_unit.hpp"
@@ -100,11 +99,11 @@ struct TomlFile::State {
   std::vector<TomlText> texts;
   std::vector<std::string> set_keys;  ///< by the source
   toml::table root;
-  std::set<std::string, std::less<>> known;  ///< every key that was asked for
+  AskedKeys asked;
   std::vector<Row> rows;
 
   const toml::node* ask(std::string_view key) {
-    known.emplace(key);
+    asked.add(key);
     return find_node(root, key);
   }
   /// The file that a node stands in: the document, or one that it includes.
@@ -116,31 +115,6 @@ struct TomlFile::State {
     const std::string file = file_of(node).string();
     const bool in_text = node != nullptr && node->source().begin.line > 0;  // and not set
     return in_text ? fmt::format("{}:{}", file, node->source().begin.line) : file;
-  }
-  [[nodiscard]] bool asked_below(const std::string& key, const char* joint) const {
-    const auto first = known.lower_bound(key + joint);
-    return first != known.end() && first->starts_with(key + joint);
-  }
-  /// Whether nothing of this table was asked for, which readers of other tables know.
-  [[nodiscard]] bool is_of_others(const std::string& table) const {
-    return is_known_table(table) && !known.contains(table) && !asked_below(table, ".") && !asked_below(table, "[");
-  }
-  /// Whether a key was asked for, or a table around it as a whole.
-  [[nodiscard]] bool is_asked(std::string_view key) const {
-    const auto below = [&](std::string_view part) {
-      return asked_below(std::string(part), ".") || asked_below(std::string(part), "[");
-    };
-    if (known.contains(key) || below(key)) return true;
-    for (std::size_t end = key.find_last_of(".["); end != std::string_view::npos; end = key.find_last_of(".[")) {
-      key = key.substr(0, end);
-      if (known.contains(key) && !below(key)) return true;
-    }
-    return false;
-  }
-  /// Whether another reader of its table knows a key that this one did not ask for.
-  [[nodiscard]] bool is_others_key(const std::string& key) const {
-    const std::optional<SharedKey> shared = shared_key(key);
-    return shared && !(shared->begins && asked_below(std::string(shared->name), ""));
   }
   void set(const TomlSetting& setting);
   [[nodiscard]] std::string suggestion(std::string_view key) const;
@@ -312,11 +286,11 @@ const std::vector<TomlText>& TomlFile::texts() const {
 
 bool TomlFile::took(std::string_view key) const {
   const auto is_set = [&](const std::string& set) { return set.starts_with(key); };
-  return std::ranges::none_of(state_->set_keys, is_set) && state_->is_asked(key);
+  return std::ranges::none_of(state_->set_keys, is_set) && state_->asked.covers(key);
 }
 
 void TomlFile::skip(std::string_view key) {
-  state_->known.emplace(key);
+  state_->asked.add(key);
 }
 
 bool TomlFile::has(std::string_view key) const {
@@ -353,7 +327,7 @@ std::vector<std::string> TomlFile::keys(std::string_view table) const {
 
 void TomlFile::require(std::string_view key, std::string_view hint) const {
   if (has(key)) return;
-  state_->known.emplace(key);
+  state_->asked.add(key);
   if (const std::string other = state_->written_for(key); !other.empty()) throw state_->unknown(other);
   InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
                             .field = shown_key(key),
@@ -422,14 +396,14 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
 
 std::string TomlFile::State::suggestion(std::string_view key) const {
   const std::string_view name = key.substr(key.rfind('.') + 1);
-  for (const std::string& other : known) {
+  for (const std::string& other : asked.all()) {
     const std::size_t dot = other.rfind('.');
     if (dot != std::string::npos && std::string_view(other).substr(dot + 1) == name) {
       return fmt::format("It belongs in [{}]", shown_key(std::string_view(other).substr(0, dot)));
     }
   }
-  if (std::string hint = synonym_hint(key, known); !hint.empty()) return hint;
-  const std::string near = nearest_word(key, known);
+  if (std::string hint = synonym_hint(key, asked.all()); !hint.empty()) return hint;
+  const std::string near = nearest_word(key, asked.all());
   return near.empty() ? near : fmt::format("Did you mean {}?", shown_key(near));
 }
 
@@ -447,7 +421,7 @@ std::string TomlFile::State::written_for(std::string_view key) const {
   if (node == nullptr || !node->is_table()) return {};
   for (const auto& [name, value] : *node->as_table()) {
     std::string other = fmt::format("{}.{}", key.substr(0, dot), name.str());
-    if (!known.contains(other) && is_written_for(name.str(), key.substr(dot + 1))) return other;
+    if (!asked.contains(other) && is_written_for(name.str(), key.substr(dot + 1))) return other;
   }
   return {};
 }
@@ -469,17 +443,17 @@ void TomlFile::State::check_known(const toml::node& node, const std::string& key
   const toml::table* table = node.as_table();
   const toml::array* list = node.is_array() && is_list_of_tables(*node.as_array()) ? node.as_array() : nullptr;
   // What was asked for as a whole, and not entry by entry, is its asker's.
-  const bool below_table = table != nullptr && asked_below(key, "."),
-             below_list = list != nullptr && asked_below(key, "[");
-  if (known.contains(key) && !below_table && !below_list) return;
+  const bool below_table = table != nullptr && asked.has_below(key, "."),
+             below_list = list != nullptr && asked.has_below(key, "[");
+  if (asked.contains(key) && !below_table && !below_list) return;
   if (table != nullptr && (key.empty() || !table->empty() || below_table)) {
     for (const auto& [name, value] : *table) {
-      if (key.empty() && is_of_others(std::string(name.str()))) continue;
+      if (key.empty() && asked.leaves_table(name.str())) continue;
       check_known(value, key.empty() ? std::string(name.str()) : key + "." + std::string(name.str()));
     }
   } else if (list != nullptr) {
     for (std::size_t i = 0; i < list->size(); ++i) check_known((*list)[i], fmt::format("{}[{}]", key, i));
-  } else if (!is_others_key(key)) {
+  } else if (!asked.leaves_key(key)) {
     throw unknown(key);
   }
 }
@@ -490,7 +464,7 @@ std::vector<std::string> TomlFile::done() const {
 }
 
 void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
-  if (is_of_others(key) || (!is_asked(key) && is_others_key(key))) return;
+  if (asked.leaves_table(key) || (!asked.covers(key) && asked.leaves_key(key))) return;
   if (const toml::table* table = node.as_table()) {
     for (const auto& [name, value] : *table)
       compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);

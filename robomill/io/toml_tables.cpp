@@ -55,4 +55,29 @@ std::optional<SharedKey> shared_key(std::string_view key) {
   return std::nullopt;
 }
 
+bool AskedKeys::has_below(std::string_view key, std::string_view joint) const {
+  const std::string begin = std::string(key) + std::string(joint);
+  const auto first = keys_.lower_bound(begin);
+  return first != keys_.end() && first->starts_with(begin);
+}
+
+bool AskedKeys::covers(std::string_view key) const {
+  const auto below = [this](std::string_view part) { return has_below(part, ".") || has_below(part, "["); };
+  if (contains(key) || below(key)) return true;
+  for (std::size_t end = key.find_last_of(".["); end != std::string_view::npos; end = key.find_last_of(".[")) {
+    key = key.substr(0, end);
+    if (contains(key) && !below(key)) return true;
+  }
+  return false;
+}
+
+bool AskedKeys::leaves_table(std::string_view table) const {
+  return is_known_table(table) && !contains(table) && !has_below(table, ".") && !has_below(table, "[");
+}
+
+bool AskedKeys::leaves_key(std::string_view key) const {
+  const std::optional<SharedKey> shared = shared_key(key);
+  return shared && !(shared->begins && has_below(shared->name, ""));
+}
+
 }  // namespace robomill::io

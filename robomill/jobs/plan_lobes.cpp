@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/cost.hpp"
@@ -125,7 +126,7 @@ void cover_cutter(PlanResult& result, Progress& progress) {
 
 }  // namespace
 
-void cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend) {
+std::string cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend) {
   const std::array<double, 2> spindle = decision::spindle_range(recommend);
   double from = spindle[0];
   const double to = spindle[1];
@@ -136,7 +137,7 @@ void cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend) {
   // Slow speeds cost most and remove least.
   constexpr double slowest = 0.1;
   const double low = std::min(asked[0], std::max(from, slowest * high));
-  if (low >= asked[0] && high <= asked[1]) return;
+  if (low >= asked[0] && high <= asked[1]) return {};
   chart = {low, high};
   cut.options.grid[0] = nodes_for(cut.options.grid[0], asked[1] - asked[0], high - low);
   std::string text = fmt::format(
@@ -145,7 +146,7 @@ void cover_spindle(LobesFile& cut, const decision::MachineLimits& recommend) {
       cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
       (to > 0.0 ? to : asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
   if (from < low) text += " Slower ones were not.";
-  cut.notes.push_back(text);
+  return text;
 }
 
 void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress) {
@@ -155,10 +156,9 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
   result.cut.validate();
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
-  const std::size_t notes = result.cut.notes.size();
-  cover_spindle(result.cut, result.job.recommend);
-  result.notes.insert(result.notes.end(), result.cut.notes.begin() + static_cast<std::ptrdiff_t>(notes),
-                      result.cut.notes.end());
+  if (std::string text = cover_spindle(result.cut, result.job.recommend); !text.empty()) {
+    result.notes.push_back(std::move(text));
+  }
   with_words_of(result.cut, [&] {
     find_limits(result, progress);
     cover_cutter(result, progress);

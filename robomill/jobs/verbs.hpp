@@ -163,11 +163,16 @@ struct Verb {
 /// Every verb that is a job, in the order of the page's buttons.
 [[nodiscard]] std::span<const Verb> verbs();
 
+/// Whether a verb needs an option beside its input.
+[[nodiscard]] bool is_required(const VerbOption& option, const std::filesystem::path& input);
+
+/// @param input    the verb's first; empty: none
 /// @param options  by name; null ones are left out
 /// @param require_inside  throws InvalidInput if a path leads out of the folder; none: all may be read
 /// @returns the options, all of them checked by their rules
 /// @throws InvalidInput naming the option if one is unknown, missing or not what it takes
-[[nodiscard]] io::Json checked_options(const Verb& verb, AskedBy asked_by, const io::Json& options,
+[[nodiscard]] io::Json checked_options(const Verb& verb, AskedBy asked_by, const std::filesystem::path& input,
+                                       const io::Json& options,
                                        const std::function<void(const std::string&)>& require_inside = {});
 
 }  // namespace robomill::jobs

@@ -21,7 +21,7 @@ const Verb& verb_of(std::string_view name) {
 
 /// What is said of options, by whoever asks.
 std::string rejected(std::string_view verb, AskedBy asked_by, const Json& options) {
-  return rejection([&] { static_cast<void>(checked_options(verb_of(verb), asked_by, options)); });
+  return rejection([&] { static_cast<void>(checked_options(verb_of(verb), asked_by, "a.csv", options)); });
 }
 
 TEST(Verbs, HaveCompleteRecords) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 
 #include "robomill/base/export.hpp"
@@ -12,6 +13,9 @@ class TomlFile;
 }
 
 namespace robomill::cell {
+
+/// Each of them says that [robot] is an arm, and not only where one stands.
+inline constexpr std::array arm_keys = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
 
 /// cell.toml: a cell, and the document that it was read from.
 struct CellFile : Cell {

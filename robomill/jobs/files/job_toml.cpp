@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <string>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/samples.hpp"
@@ -46,8 +46,7 @@ void read_sources(io::TomlFile& file, Job& job) {
     throw file.reject("job.joint", "goes with job.assembly", "It stands in place of the assembly's [joint]");
   }
   read_part(file, "job.forces", file.has("forces") || file.has("stock"), job, job.forces);
-  constexpr std::array arms = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
-  const bool holds_arm = std::ranges::any_of(arms, [&](const char* key) { return file.has(key); });
+  const bool holds_arm = std::ranges::any_of(cell::arm_keys, [&](const char* key) { return file.has(key); });
   read_part(file, "job.cell", holds_arm, job, job.cell);
   file.path("job.program", job.program);
   if (job.forces.empty() && job.cell.empty() != job.program.empty()) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
@@ -85,7 +87,9 @@ void take_plan(LobesFile& cut, const PlanResult& structure) {
   cut.drop_dynamics();
   load_dynamics(cut);
   cut.problem.dynamics = structure.model;
-  cover_spindle(cut, structure.job.recommend);
+  if (std::string text = cover_spindle(cut, structure.job.recommend); !text.empty()) {
+    cut.notes.push_back(std::move(text));
+  }
   add_assumed(cut.assumed, structure.assumed);
   for (const std::string& text : structure.warnings) {
     cut.notes.push_back(fmt::format("{}{}", io::warning_label, text));

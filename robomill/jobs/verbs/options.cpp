@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/cut_limits.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/verbs.hpp"
@@ -203,8 +204,12 @@ InvalidInput VerbJob::about_option(const InvalidInput& error, std::string_view m
   return InvalidInput(std::move(parts));
 }
 
-io::Json checked_options(const Verb& verb, AskedBy asked_by, const io::Json& options,
-                         const RequireInside& require_inside) {
+bool is_required(const VerbOption& option, const std::filesystem::path& input) {
+  return option.required && !(option.job_gives && io::format_of(input) == io::Format::toml);
+}
+
+io::Json checked_options(const Verb& verb, AskedBy asked_by, const std::filesystem::path& input,
+                         const io::Json& options, const RequireInside& require_inside) {
   if (!options.is_object()) throw InvalidInput("options", "must be an object");
   io::Json out = io::Json::object();
   for (const auto& [name, value] : options.items()) {
@@ -224,7 +229,7 @@ io::Json checked_options(const Verb& verb, AskedBy asked_by, const io::Json& opt
   }
   for (const VerbOption& option : verb.options) {
     const std::string name = option_name(verb, asked_by, option.name);
-    if (option.required && !option.job_gives && !out.contains(option.name)) {
+    if (is_required(option, input) && !out.contains(option.name)) {
       throw InvalidInput(name, fmt::format("is missing; {} needs it", verb.name), std::string(option.meaning));
     }
     if (!option.needs.empty() && out.contains(option.name) && !out.contains(option.needs)) {

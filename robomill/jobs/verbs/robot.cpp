@@ -5,7 +5,6 @@
 #include "robomill/cell/dynamics.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cell/posture_choice.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/verbs/records.hpp"
@@ -51,9 +50,6 @@ Outcome run_smooth_verb(const VerbJob& job, Progress& progress) {
                                         .keep_violations = job.flag("keep_violations"),
                                         .record = job.wants_curves,
                                         .program_period_s = job.get("program_period_ms", 0.0) * units::ms}};
-  if (wanted.cell.empty() && io::format_of(wanted.program) != io::Format::toml) {
-    throw InvalidInput(job.named("cell"), "is missing; smooth needs it beside a program", "A job.toml names its own");
-  }
   process::SmoothResult result = with_posture(job, [&] {
     return with_option(job, "program_period_s", "program_period_ms", units::ms,
                        [&] { return run_smooth(wanted, progress); });

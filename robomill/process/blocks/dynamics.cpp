@@ -19,9 +19,12 @@ namespace robomill::process {
 
 namespace {
 
-/// Postures of a program: each of its runs asks for the same ones.
+/// Postures of a program: each of its runs asks for the same ones. A server that keeps a program asks for others as
+/// long as its flange is turned: beyond their most all are found again.
 class KnownPostures {
  public:
+  static constexpr std::size_t most = 4096;  ///< kept at a time
+
   template <class Find>
   PostureDynamics find(const Eigen::VectorXd& joints, const Find& find) {
     const std::vector<double> key(joints.begin(), joints.end());
@@ -31,6 +34,7 @@ class KnownPostures {
     }
     PostureDynamics found = find();
     const std::scoped_lock lock(mutex_);
+    if (known_.size() >= most) known_.clear();
     return known_.emplace(key, std::move(found)).first->second;
   }
 

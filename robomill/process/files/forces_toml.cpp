@@ -1,12 +1,12 @@
 #include "robomill/process/files/forces_toml.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/io/samples.hpp"
@@ -69,9 +69,8 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
 
 /// @param document  whose [robot] may be the arm itself
 void read_robot(io::TomlFile& file, const std::filesystem::path& document, ForcesJob job, ForcesFile& out) {
-  constexpr std::array arms = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
   const bool alone = job == ForcesJob::revolution;
-  const bool holds_arm = std::ranges::any_of(arms, [&](const char* key) { return file.has(key); });
+  const bool holds_arm = std::ranges::any_of(cell::arm_keys, [&](const char* key) { return file.has(key); });
   const bool has_cell = holds_arm || file.has("job.cell");
   if (!file.has("robot") && !has_cell) return;
   if (alone && has_cell && !file.has("robot.joints_deg")) return;  // no posture to cut in

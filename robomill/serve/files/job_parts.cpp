@@ -158,8 +158,7 @@ class Reader {
       parts_.modes.file = named("dynamics.modes");
       parts_.frfs.file = named("dynamics.frf");
     }
-    constexpr std::array arms = {"robot.model", "robot.dh", "robot.urdf", "robot.kind"};
-    const bool holds_arm = std::ranges::any_of(arms, [&](const char* key) { return has(key); });
+    const bool holds_arm = std::ranges::any_of(cell::arm_keys, [&](const char* key) { return has(key); });
     parts_.robot.file = part("job.cell", holds_arm ? "robot" : nullptr);
     parts_.program.file = named("job.program");
     forces_ = part("job.forces", has("stock") ? "stock" : has("forces") ? "forces" : nullptr);
@@ -299,7 +298,7 @@ class Reader {
   }
   void read_robot() {
     attempt(parts_.robot, "job.cell", [&] {
-      const cell::CellFile cell = cell::read_cell(parts_.robot.file, cell::Robots::any);
+      const cell::CellFile cell = cell::read_cell(source_of(parts_.robot), cell::Robots::any);
       parts_.robot.says = !cell.model.empty() ? cell.model : cell.hybrid ? "hybrid machine" : "arm of the document";
       parts_.robot.guesses = guesses_of(parts_.robot.file, cell.assumed);
     });

@@ -121,8 +121,8 @@ JobRequest read_job_request(const io::Json& body, const ResolvePath& resolve) {
     require_inside(request.output);
     if (verb.document) jobs::require_output(*verb.document, request.output);
   }
-  request.options =
-      jobs::checked_options(verb, jobs::AskedBy::request, body.value("options", io::Json::object()), require_inside);
+  request.options = jobs::checked_options(verb, jobs::AskedBy::request, request.inputs.front(),
+                                          body.value("options", io::Json::object()), require_inside);
   require_places_apart(places_of(verb, request, resolve));
   return request;
 }
