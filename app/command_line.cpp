@@ -283,15 +283,15 @@ void CommandLine::Parts::add(VerbGroup group) {
                           });
     sub.add(*option, false, option->required && !option->job_gives && of_plain);
   }
-  for (const Verb* const verb : sub.group.verbs) {
-    if (verb != &plain) sub.add_key(*verb);
+  for (const Verb* const each : sub.group.verbs) {
+    if (each != &plain) sub.add_key(*each);
   }
   for (Slot& slot : sub.slots) {
     if (!slot.option.needs.empty()) slot.parsed->needs(sub.find(slot.option.needs)->parsed);
     if (!slot.option.excludes.empty()) slot.parsed->excludes(sub.find(slot.option.excludes)->parsed);
   }
   std::string footer;
-  for (const Verb* const verb : sub.group.verbs) footer += "Example: robomill " + std::string(verb->example) + "\n";
+  for (const Verb* const each : sub.group.verbs) footer += "Example: robomill " + std::string(each->example) + "\n";
   footer += "Documentation: docs/formats.md" + (plain.readme.empty() ? "" : ", " + std::string(plain.readme));
   sub.app->footer(footer);
   sub.app->callback([this, &sub] { chosen = &sub; });
