@@ -192,6 +192,18 @@ template <class T, class U>
   return out;
 }
 
+/// A key that code reads, and no row: its value depends on other keys.
+/// @param lists  1: a list of them
+template <class T>
+[[nodiscard]] Row<T> declared(std::string name, Holds holds, std::string meaning, int lists = 0) {
+  const double factor = key_unit(name).factor;
+  Row<T> row{.key = {.name = std::move(name), .holds = holds, .lists = lists, .meaning = std::move(meaning)},
+             .factor = factor};
+  row.write = [](const T&, const Row<T>&) { return Json(Json::value_t::discarded); };
+  row.always = false;
+  return row;
+}
+
 /// None where it is not > 0: unknown, none.
 [[nodiscard]] inline std::optional<double> if_positive(double value) {
   return value > 0.0 ? std::optional(value) : std::nullopt;
