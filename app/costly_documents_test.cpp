@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_lines.hpp"
+#include "robomill/io/toml/lines.hpp"
 #include "test_program.hpp"
 
 namespace robomill::app {

@@ -16,7 +16,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/io/output_places.hpp"
+#include "robomill/io/system/output_places.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "robomill/io/sample_source.hpp"
-#include "robomill/io/sandbox.hpp"
-#include "robomill/io/sanitized.hpp"
+#include "robomill/io/system/sandbox.hpp"
+#include "robomill/io/system/sanitized.hpp"
 #include "test_program.hpp"
 #include "testing/processes.hpp"
 #include "testing/serve/http_client.hpp"

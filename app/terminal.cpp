@@ -13,7 +13,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/pending_names.hpp"
+#include "robomill/io/system/pending_names.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::app {

@@ -11,7 +11,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/program/files/rewrite.hpp"

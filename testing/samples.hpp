@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/samples.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/samples.hpp"
 
 namespace robomill::test_support {
 

@@ -12,7 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/io/descriptor.hpp"
+#include "robomill/io/system/descriptor.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/version.hpp"
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "robomill/io/append_log.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/live/metrics.hpp"
+#include "robomill/io/system/append_log.hpp"
+#include "robomill/live/health/metrics.hpp"
 #include "robomill/live/notices.hpp"
 
 namespace robomill::app {

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "robomill/live/metrics.hpp"
+#include "robomill/live/health/metrics.hpp"
 
 namespace robomill::app {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "examples/first-lobes/hammer.hpp"
-#include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 
 namespace {

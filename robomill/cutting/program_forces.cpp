@@ -9,10 +9,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/cutting/coefficients/moving_mean.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/engagement.hpp"
-#include "robomill/cutting/moving_mean.hpp"
-#include "robomill/cutting/program_engagement_local.hpp"
+#include "robomill/cutting/program/local.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/confinement.hpp"
-#include "robomill/io/folder_change.hpp"
-#include "robomill/io/output_places.hpp"
-#include "robomill/io/pending_names.hpp"
+#include "robomill/io/system/confinement.hpp"
+#include "robomill/io/system/folder_change.hpp"
+#include "robomill/io/system/output_places.hpp"
+#include "robomill/io/system/pending_names.hpp"
 
 namespace robomill::io {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/io/descriptor.hpp"
+#include "robomill/io/system/descriptor.hpp"
 
 namespace robomill::io {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/pending_names.hpp"
+#include "robomill/io/system/pending_names.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {

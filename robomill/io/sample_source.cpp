@@ -17,11 +17,11 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/confinement.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records.hpp"
-#include "robomill/io/sample_alignment.hpp"
-#include "robomill/io/sample_parts.hpp"
+#include "robomill/io/records/records.hpp"
+#include "robomill/io/records/sample_alignment.hpp"
+#include "robomill/io/records/sample_parts.hpp"
+#include "robomill/io/system/confinement.hpp"
 
 namespace robomill::io {
 namespace {

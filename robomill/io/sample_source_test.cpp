@@ -20,7 +20,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/mat.hpp"
+#include "robomill/io/records/mat.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {

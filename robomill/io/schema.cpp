@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "robomill/io/append.hpp"
 #include "robomill/io/columns.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::io {
 

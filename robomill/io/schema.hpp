@@ -14,7 +14,7 @@
 #include "robomill/io/key_unit.hpp"
 #include "robomill/io/schema_values.hpp"
 #include "robomill/io/table_info.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::io {
 

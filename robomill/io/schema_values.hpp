@@ -15,7 +15,7 @@
 
 #include "robomill/io/json.hpp"
 #include "robomill/io/table_info.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::io {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/io/uff.hpp"
+#include "robomill/io/records/uff.hpp"
 
 namespace robomill::io {
 

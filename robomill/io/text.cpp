@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::io {
 namespace {

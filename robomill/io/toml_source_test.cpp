@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {

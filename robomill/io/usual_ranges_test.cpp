@@ -15,7 +15,7 @@
 #include "robomill/io/key_unit.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/files/lobes_schema.hpp"
 #include "robomill/jobs/planned_cut.hpp"

@@ -11,8 +11,8 @@
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/report/summary.hpp"
 #include "robomill/jobs/smooth.hpp"
-#include "robomill/jobs/summary.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {

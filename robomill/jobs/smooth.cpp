@@ -6,7 +6,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/cell/posture_choice.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/process/files/forces_toml.hpp"
 #include "robomill/program/files/program_files.hpp"

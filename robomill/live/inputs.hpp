@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "robomill/io/sample_source.hpp"
-#include "robomill/live/arrival_rate.hpp"
 #include "robomill/live/block_order.hpp"
+#include "robomill/live/health/arrival_rate.hpp"
+#include "robomill/live/health/metrics.hpp"
 #include "robomill/live/intake.hpp"
-#include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 

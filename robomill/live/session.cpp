@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/live/watchdog.hpp"
+#include "robomill/live/health/watchdog.hpp"
 
 namespace robomill::live {
 namespace {

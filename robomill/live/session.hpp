@@ -11,9 +11,9 @@
 
 #include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
+#include "robomill/live/health/load.hpp"
+#include "robomill/live/health/metrics.hpp"
 #include "robomill/live/hop_queue.hpp"
-#include "robomill/live/load.hpp"
-#include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/live/published_state.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"

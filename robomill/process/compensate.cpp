@@ -14,7 +14,7 @@
 #include "robomill/modal/tip.hpp"
 #include "robomill/process/blocks/named_block.hpp"
 #include "robomill/process/compensate/surface_runs.hpp"
-#include "robomill/robot/choose.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 

@@ -11,8 +11,8 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/unusual_cut.hpp"
-#include "robomill/robot/choose.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 #include "robomill/robot/stiffness.hpp"
 
 namespace robomill::process {

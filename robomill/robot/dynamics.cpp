@@ -10,7 +10,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/linear_algebra.hpp"
-#include "robomill/robot/kdl_chain.hpp"
+#include "robomill/robot/kinematics/kdl_chain.hpp"
 #include "robomill/robot/stiffness.hpp"
 
 namespace robomill::robot {

@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/robot/dynamics.hpp"
-#include "robomill/robot/kdl_chain.hpp"
+#include "robomill/robot/kinematics/kdl_chain.hpp"
 
 namespace robomill::robot {
 namespace {

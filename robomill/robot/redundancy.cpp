@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
-#include "robomill/robot/choose.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 
 namespace robomill::robot {
 namespace {

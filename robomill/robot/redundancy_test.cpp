@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "robomill/base/random.hpp"
-#include "robomill/robot/choose.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
 

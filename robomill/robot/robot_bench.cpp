@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "robomill/robot/arm.hpp"
-#include "robomill/robot/choose.hpp"
 #include "robomill/robot/collision.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 #include "robomill/robot/redundancy.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"

@@ -12,9 +12,9 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/robot/condition.hpp"
-#include "robomill/robot/images.hpp"
-#include "robomill/robot/newton.hpp"
-#include "robomill/robot/parallel_axes.hpp"
+#include "robomill/robot/kinematics/images.hpp"
+#include "robomill/robot/kinematics/newton.hpp"
+#include "robomill/robot/kinematics/parallel_axes.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::robot {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/robot/choose.hpp"
 #include "robomill/robot/hybrid.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 #include "testing/allocations.hpp"
 #include "testing/robot/arms.hpp"
 #include "testing/robot/kinematics.hpp"

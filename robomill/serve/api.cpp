@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml/edit.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/answers.hpp"
 #include "robomill/serve/files/toml_literal.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/confinement.hpp"
-#include "robomill/io/sandbox.hpp"
+#include "robomill/io/system/confinement.hpp"
+#include "robomill/io/system/sandbox.hpp"
 #include "robomill/page/app_page.hpp"
 #include "robomill/serve/api.hpp"
 #include "robomill/serve/error_json.hpp"

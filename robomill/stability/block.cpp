@@ -10,13 +10,13 @@
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/cutting/cut_limits.hpp"
+#include "robomill/stability/chart/cost.hpp"
 #include "robomill/stability/chart/edges.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
 #include "robomill/stability/chart/lowest_crossing.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/collocation/mode_sensitivity.hpp"
 #include "robomill/stability/collocation/regime_of.hpp"
-#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/sensitivity.hpp"
 
 namespace robomill::stability {

@@ -8,7 +8,7 @@
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/stability/frequency_domain/contact_basis.hpp"
 #include "robomill/stability/peak_classification.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -11,8 +11,8 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/chip.hpp"
 #include "robomill/cutting/cut_limits.hpp"
-#include "robomill/stability/steady_vibration.hpp"
-#include "robomill/stability/surface_error_spatial.hpp"
+#include "robomill/stability/vibration/steady_vibration.hpp"
+#include "robomill/stability/vibration/surface_error_spatial.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -11,8 +11,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/stability/frequency_domain/frf_interpolation.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/motion.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/motion.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability {
 namespace {

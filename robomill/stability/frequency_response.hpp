@@ -9,7 +9,7 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/tip.hpp"
 
-// Method: robomill/stability/README.md, "In the frequency domain (`frequency_domain.hpp`, `frequency_response.hpp`)"
+// Method: robomill/stability/README.md, "In the frequency domain (`frequency_response.hpp`)"
 
 namespace robomill::stability {
 

@@ -17,11 +17,11 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/chart/cost.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/collocation/milling_model.hpp"
 #include "robomill/stability/gauss.hpp"
-#include "robomill/stability/lobes_cost.hpp"
-#include "robomill/stability/surface_error_spatial.hpp"
+#include "robomill/stability/vibration/surface_error_spatial.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -10,8 +10,8 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/chart/cost.hpp"
 #include "robomill/stability/chart/gain_search.hpp"
-#include "robomill/stability/lobes_cost.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability {

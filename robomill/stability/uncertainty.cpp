@@ -13,7 +13,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/stability/chart/chart.hpp"
-#include "robomill/stability/lobes_cost.hpp"
+#include "robomill/stability/chart/cost.hpp"
 
 namespace robomill::stability {
 namespace {

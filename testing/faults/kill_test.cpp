@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/io/append_log.hpp"
+#include "robomill/io/system/append_log.hpp"
 #include "testing/faults/judge.hpp"
 #include "testing/processes.hpp"
 #include "testing/support.hpp"

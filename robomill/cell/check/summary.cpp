@@ -10,8 +10,8 @@
 #include "robomill/cell/check.hpp"
 #include "robomill/cell/check/shown.hpp"
 #include "robomill/cell/posture_choice.hpp"
-#include "robomill/io/append.hpp"
 #include "robomill/io/note_lines.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/robot/euler.hpp"
 
 namespace robomill::cell {

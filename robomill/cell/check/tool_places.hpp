@@ -7,9 +7,9 @@
 
 #include "robomill/cell/check.hpp"
 #include "robomill/program/program.hpp"
-#include "robomill/robot/images.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/kinematics.hpp"
+#include "robomill/robot/kinematics/images.hpp"
 
 namespace robomill::cell {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "robomill/cell/cell.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::cell {
 

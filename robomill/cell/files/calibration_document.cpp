@@ -11,7 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/output_places.hpp"
+#include "robomill/io/system/output_places.hpp"
 
 namespace robomill::cell {
 namespace {

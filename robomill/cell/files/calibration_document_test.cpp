@@ -15,7 +15,7 @@
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/output_places.hpp"
+#include "robomill/io/system/output_places.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cell {

@@ -7,7 +7,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "robomill/base/embed.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/path/files/trajectory.hpp"
 
 // By their names.

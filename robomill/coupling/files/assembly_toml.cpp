@@ -12,8 +12,8 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
-#include "robomill/io/samples.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::coupling {

@@ -4,7 +4,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/joint_fit.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::coupling {
 

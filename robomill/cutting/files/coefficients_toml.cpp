@@ -14,7 +14,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/cutting/material.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {

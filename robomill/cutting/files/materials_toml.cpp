@@ -13,7 +13,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/embedded_materials.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::cutting {
 namespace {

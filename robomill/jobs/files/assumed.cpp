@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::jobs {
 

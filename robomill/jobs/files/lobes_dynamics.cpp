@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/planned_cut.hpp"

@@ -18,8 +18,8 @@
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/cutting/files/cutter_schema.hpp"
 #include "robomill/cutting/polynomial.hpp"
-#include "robomill/io/samples.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/samples.hpp"
 #include "robomill/process/files/cut_fields.hpp"
 #include "robomill/stability/files/chart_schema.hpp"
 

@@ -4,10 +4,10 @@
 #include <system_error>
 #include <vector>
 
-#include "robomill/io/folder_change.hpp"
+#include "robomill/io/system/folder_change.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
-#include "robomill/jobs/monitor_plan.hpp"
-#include "robomill/jobs/pages.hpp"
+#include "robomill/jobs/plan/monitor.hpp"
+#include "robomill/jobs/report/pages.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::jobs {

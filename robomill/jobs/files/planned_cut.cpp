@@ -10,9 +10,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/plan_lobes.hpp"
+#include "robomill/jobs/plan/lobes.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::jobs {
 namespace made_up_hit {

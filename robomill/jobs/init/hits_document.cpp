@@ -15,7 +15,7 @@
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cell/files/known_arms.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml/edit.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/init/template_lines.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "robomill/io/samples.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml/edit.hpp"
+#include "robomill/io/toml/samples.hpp"
 
 namespace robomill::jobs {
 namespace {

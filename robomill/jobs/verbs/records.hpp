@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "robomill/jobs/pages.hpp"
-#include "robomill/jobs/summary.hpp"
+#include "robomill/jobs/report/pages.hpp"
+#include "robomill/jobs/report/summary.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "robomill/jobs/verbs/new_option.hpp"
 

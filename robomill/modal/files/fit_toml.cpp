@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::modal {
 

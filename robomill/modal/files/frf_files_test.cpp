@@ -9,7 +9,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/uff.hpp"
+#include "robomill/io/records/uff.hpp"
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"

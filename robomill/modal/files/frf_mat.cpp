@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/mat.hpp"
+#include "robomill/io/records/mat.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
 namespace robomill::modal {

@@ -9,9 +9,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/si.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/modal/files/frf_check.hpp"

@@ -6,9 +6,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records/uff.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/io/uff.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/records.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/modal/hits.hpp"
 
 // Method: robomill/modal/README.md, "Files"

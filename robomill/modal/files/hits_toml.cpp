@@ -11,10 +11,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records.hpp"
-#include "robomill/io/samples.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/si.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/hit_guess.hpp"
 
 namespace robomill::modal {

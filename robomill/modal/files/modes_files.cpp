@@ -12,7 +12,7 @@
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/modal/files/modes_schema.hpp"
 #include "robomill/modal/weak_modes.hpp"
 

@@ -2,7 +2,7 @@
 // What monitor.toml and recordings.toml share; not for other folders.
 #include <string>
 
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
 namespace robomill::monitor {

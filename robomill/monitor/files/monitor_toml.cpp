@@ -11,9 +11,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
-#include "robomill/io/samples.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/system/append.hpp"
+#include "robomill/io/toml/edit.hpp"
+#include "robomill/io/toml/samples.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
 namespace robomill::monitor {

@@ -7,7 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
 
 namespace robomill::path {

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {

@@ -6,8 +6,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/hdf5_id.hpp"
-#include "robomill/io/hdf5_output.hpp"
+#include "robomill/io/records/hdf5_id.hpp"
+#include "robomill/io/records/hdf5_output.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {

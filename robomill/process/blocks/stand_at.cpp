@@ -1,6 +1,6 @@
 #include "robomill/process/blocks/stand_at.hpp"
 
-#include "robomill/robot/choose.hpp"
+#include "robomill/robot/kinematics/choose.hpp"
 
 namespace robomill::process {
 

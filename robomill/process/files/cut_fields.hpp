@@ -6,7 +6,7 @@
 
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/modes.hpp"
 

@@ -1,7 +1,7 @@
 #include <string>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/process/files/forces_schema.hpp"
 
 namespace robomill::process {

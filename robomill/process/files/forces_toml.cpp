@@ -9,8 +9,8 @@
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
-#include "robomill/io/samples.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/process/files/cut_fields.hpp"
 

@@ -12,7 +12,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
-#include "robomill/program/files/gcode_reader.hpp"
+#include "robomill/program/files/gcode/reader.hpp"
 #include "robomill/program/files/program_csv.hpp"
 #include "robomill/program/files/program_lines.hpp"
 #include "robomill/program/files/program_reader.hpp"

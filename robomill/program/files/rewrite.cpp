@@ -9,7 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/program/files/rewriter.hpp"
+#include "robomill/program/files/rewrite/rewriter.hpp"
 
 namespace robomill::program {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/program/files/rewriter.hpp"
+#include "robomill/program/files/rewrite/rewriter.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::program {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/robot/collision.hpp"
 
 namespace robomill::robot {

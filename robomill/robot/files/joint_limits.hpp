@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 /// The limits of a cell's joints, as cell.toml gives them: robot.joint_max_velocity in rad/s or m/s, by joint, with a
 /// number for every joint; or with the unit in the key, _deg_per_s, _rad_per_s and _mm_per_s, with a number for every

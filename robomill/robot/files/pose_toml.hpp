@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 
 namespace robomill::robot {
 

@@ -6,7 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/toml_values.hpp"
+#include "robomill/io/toml/values.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/documents.hpp"
 #include "robomill/serve/files/inspect.hpp"

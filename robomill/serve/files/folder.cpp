@@ -10,8 +10,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/io/confinement.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/system/confinement.hpp"
 
 namespace robomill::serve {
 namespace {

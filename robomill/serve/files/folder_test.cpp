@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/confinement.hpp"
-#include "robomill/io/mat.hpp"
+#include "robomill/io/records/mat.hpp"
+#include "robomill/io/system/confinement.hpp"
 #include "robomill/serve/files/named_files.hpp"
 #include "testing/support.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/modal/files/hit_guess.hpp"
 #include "robomill/serve/files/kind.hpp"
 

@@ -12,7 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/mat.hpp"
+#include "robomill/io/records/mat.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/files/schemas.hpp"

@@ -12,7 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/toml_values.hpp"
+#include "robomill/io/toml/values.hpp"
 
 namespace robomill::serve {
 namespace {

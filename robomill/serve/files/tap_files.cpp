@@ -7,7 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml/edit.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/serve/tap/settings.hpp"

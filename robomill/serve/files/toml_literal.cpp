@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/toml/edit.hpp"
 
 namespace robomill::serve {
 

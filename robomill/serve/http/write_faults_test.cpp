@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "robomill/io/sanitized.hpp"
+#include "robomill/io/system/sanitized.hpp"
 #include "robomill/serve/http/server.hpp"
 #include "testing/serve/http_client.hpp"
 

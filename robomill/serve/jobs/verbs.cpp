@@ -9,7 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/output_places.hpp"
+#include "robomill/io/system/output_places.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "robomill/page/report.hpp"

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "robomill/cell/files/cell_toml.hpp"
-#include "robomill/io/toml_file.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/serve/files/named_files.hpp"
 

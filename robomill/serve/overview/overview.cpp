@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "robomill/io/confinement.hpp"
+#include "robomill/io/system/confinement.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/folder.hpp"
 #include "robomill/serve/files/named_files.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/io/confinement.hpp"
+#include "robomill/io/system/confinement.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "testing/support.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "robomill/io/sandbox.hpp"
+#include "robomill/io/system/sandbox.hpp"
 
 // Method: robomill/serve/README.md, "Processes"
 

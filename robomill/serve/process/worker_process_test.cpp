@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "robomill/io/file.hpp"
-#include "robomill/io/sandbox.hpp"
+#include "robomill/io/system/sandbox.hpp"
 #include "robomill/serve/process/work.hpp"
 #include "testing/support.hpp"
 

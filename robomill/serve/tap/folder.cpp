@@ -8,7 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records.hpp"
+#include "robomill/io/records/records.hpp"
 
 namespace robomill::serve {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/io/confinement.hpp"
-#include "robomill/io/toml_edit.hpp"
+#include "robomill/io/system/confinement.hpp"
+#include "robomill/io/toml/edit.hpp"
+#include "robomill/io/toml/values.hpp"
 #include "robomill/io/toml_source.hpp"
-#include "robomill/io/toml_values.hpp"
 
 namespace robomill::serve {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "robomill/io/json.hpp"
+#include "robomill/live/health/metrics.hpp"
 #include "robomill/live/hop_queue.hpp"
-#include "robomill/live/metrics.hpp"
 #include "robomill/live/notices.hpp"
 #include "robomill/modal/impact/hit_trigger.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"

@@ -16,7 +16,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/io/confinement.hpp"
+#include "robomill/io/system/confinement.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/serve/error_json.hpp"

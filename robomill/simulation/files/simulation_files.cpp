@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/mat.hpp"
+#include "robomill/io/records/mat.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::simulation {
 namespace {

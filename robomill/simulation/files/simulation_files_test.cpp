@@ -6,7 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/io/records.hpp"
+#include "robomill/io/records/records.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::simulation {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "robomill/stability/collocation/cut_mesh.hpp"
+#include "robomill/stability/collocation/mesh/cut_mesh.hpp"
 #include "robomill/stability/time_steps/piece_plan.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 

@@ -8,7 +8,7 @@
 #include "robomill/base/lanes.hpp"
 #include "robomill/stability/collocation/collocation_case.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/motion.hpp"
+#include "robomill/stability/vibration/motion.hpp"
 
 namespace robomill::stability::detail {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "robomill/stability/collocation/collocation.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "robomill/stability/collocation/collocation_map.hpp"
-#include "robomill/stability/collocation/contacts.hpp"
+#include "robomill/stability/collocation/mesh/contacts.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {

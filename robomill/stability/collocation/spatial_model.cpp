@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/stability/collocation/given_engagement.hpp"
-#include "robomill/stability/collocation/spatial_mesh.hpp"
+#include "robomill/stability/collocation/mesh/given_engagement.hpp"
+#include "robomill/stability/collocation/mesh/spatial_mesh.hpp"
 
 namespace robomill::stability::detail {
 namespace {

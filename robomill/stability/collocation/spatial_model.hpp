@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "robomill/stability/collocation/collocation_model.hpp"
-#include "robomill/stability/collocation/edge_contacts.hpp"
+#include "robomill/stability/collocation/mesh/edge_contacts.hpp"
 
 namespace robomill::stability::detail {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "robomill/stability/collocation/contacts.hpp"
+#include "robomill/stability/collocation/mesh/contacts.hpp"
 
 namespace robomill::stability::detail {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "robomill/stability/collocation/steady_force.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 // Derived in docs/theory/three-directions.md
 namespace robomill::stability::detail {

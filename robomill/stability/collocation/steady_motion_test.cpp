@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/stability/collocation/silhouette.hpp"
+#include "robomill/stability/collocation/mesh/silhouette.hpp"
 #include "testing/stability/spatial_cases.hpp"
 
 namespace robomill::stability {

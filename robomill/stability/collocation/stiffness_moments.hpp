@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/stability/collocation/edge_contacts.hpp"
+#include "robomill/stability/collocation/mesh/edge_contacts.hpp"
 #include "robomill/stability/collocation/moment_kernels.hpp"
 #include "robomill/stability/gauss.hpp"
 

@@ -7,7 +7,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/stability/chart/chart.hpp"
-#include "robomill/stability/frequency_domain.hpp"
+#include "robomill/stability/frequency_domain/frequency_domain.hpp"
 
 namespace robomill::stability::detail {
 namespace {

@@ -8,9 +8,9 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/cut_limits.hpp"
-#include "robomill/stability/frequency_domain.hpp"
 #include "robomill/stability/frequency_domain/contact_basis.hpp"
 #include "robomill/stability/frequency_domain/crossings.hpp"
+#include "robomill/stability/frequency_domain/frequency_domain.hpp"
 
 namespace robomill::stability {
 namespace {

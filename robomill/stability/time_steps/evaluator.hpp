@@ -5,13 +5,13 @@
 
 #include "robomill/stability/eigen/arnoldi.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/motion.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 #include "robomill/stability/time_steps/cut_steps.hpp"
 #include "robomill/stability/time_steps/monodromy.hpp"
 #include "robomill/stability/time_steps/speed_plan.hpp"
 #include "robomill/stability/time_steps/step_motion.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/motion.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 

@@ -8,7 +8,7 @@
 
 #include "robomill/stability/eigen/period_map.hpp"
 #include "robomill/stability/time_steps/cut_steps.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "robomill/stability/rotation.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "robomill/stability/tip_dynamics.hpp"
+#include "robomill/stability/vibration/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
 

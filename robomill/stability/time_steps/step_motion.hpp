@@ -7,7 +7,7 @@
 
 #include "robomill/stability/eigen/arnoldi.hpp"
 #include "robomill/stability/eigen/period_map.hpp"
-#include "robomill/stability/motion.hpp"
+#include "robomill/stability/vibration/motion.hpp"
 
 namespace robomill::stability::detail {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/robot/euler.hpp"
 
 namespace robomill::path {

@@ -13,7 +13,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 #include "robomill/path/files/robot_programs/joint_dialects.hpp"
 #include "robomill/path/files/robot_programs/joint_run.hpp"
 #include "robomill/path/files/sample_spool.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::path {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "robomill/io/append.hpp"
+#include "robomill/io/system/append.hpp"
 
 namespace robomill::path {
 namespace {
