@@ -6,11 +6,21 @@ function(robomill_test_program target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${ROBOMILL_UNITY} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 
+# Sources of a stage, compiled once.
+function(robomill_objects target precompiled flags libraries)
+  add_library(${target} OBJECT ${ARGN})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE ${flags} Eigen3::Eigen ${libraries})
+  target_precompile_headers(${target} REUSE_FROM ${precompiled})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ROBOMILL_UNITY} UNITY_BUILD_BATCH_SIZE 24)
+endfunction()
+
 # robomill_stage(NAME modal LAYER 2
 #                SOURCES frf.cpp ...            library sources of the stage
 #                PUBLIC_HEADERS frf.hpp ...     installed, and compiled on their own
 #                DEPENDS base signal            stages on lower layers
 #                LIBRARIES Ceres::ceres         third-party libraries, private to the stage
+#                COLD files/                    where no source is hot, compiled for a quick build: folders, or . for the whole stage
 #                TESTS frf_test.cpp ...         one test program: <name>_test
 #                BENCHES lobes_bench.cpp ...    one benchmark program: <name>_bench
 #                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
@@ -18,7 +28,7 @@ endfunction()
 #                THREADED pso_test.cpp ...)     of TESTS, those whose threads ThreadSanitizer looks at; its build has no others
 function(robomill_stage)
   cmake_parse_arguments(S "" "NAME;LAYER"
-    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;THREADED" ${ARGN})
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;COLD;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;THREADED" ${ARGN})
   set(target robomill_${S_NAME})
   foreach(dependency IN LISTS S_DEPENDS)
     if(NOT TARGET robomill_${dependency})
@@ -30,20 +40,33 @@ function(robomill_stage)
     endif()
   endforeach()
 
-  # Compiled once; the archive serves tests and the program, the objects the shared library.
-  add_library(${target}_objects OBJECT ${S_SOURCES})
-  target_include_directories(${target}_objects PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${target}_objects PRIVATE robomill_flags Eigen3::Eigen ${S_LIBRARIES})
-  target_precompile_headers(${target}_objects REUSE_FROM robomill_precompiled)
-  set_target_properties(${target}_objects PROPERTIES UNITY_BUILD ${ROBOMILL_UNITY} UNITY_BUILD_BATCH_SIZE 12)
-  add_library(${target} STATIC $<TARGET_OBJECTS:${target}_objects>)
+  # The archive serves tests and the program, the objects the shared library.
+  set(hot ${S_SOURCES})
+  set(cold "")
+  foreach(folder IN LISTS S_COLD)
+    string(REPLACE "." "" begin "${folder}")
+    set(these ${hot})
+    list(FILTER these INCLUDE REGEX "^${begin}")
+    list(FILTER hot EXCLUDE REGEX "^${begin}")
+    list(APPEND cold ${these})
+  endforeach()
+  set(objects "")
+  if(hot)
+    robomill_objects(${target}_objects robomill_precompiled robomill_flags "${S_LIBRARIES}" ${hot})
+    list(APPEND objects $<TARGET_OBJECTS:${target}_objects>)
+  endif()
+  if(cold)
+    robomill_objects(${target}_cold_objects robomill_precompiled_cold robomill_cold_flags "${S_LIBRARIES}" ${cold})
+    list(APPEND objects $<TARGET_OBJECTS:${target}_cold_objects>)
+  endif()
+  add_library(${target} STATIC ${objects})
   set_target_properties(${target} PROPERTIES ROBOMILL_LAYER ${S_LAYER})
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE ${S_LIBRARIES} PUBLIC Eigen3::Eigen)
   foreach(dependency IN LISTS S_DEPENDS)
     target_link_libraries(${target} PUBLIC robomill_${dependency})
   endforeach()
-  set_property(GLOBAL APPEND PROPERTY ROBOMILL_STAGE_OBJECTS $<TARGET_OBJECTS:${target}_objects>)
+  set_property(GLOBAL APPEND PROPERTY ROBOMILL_STAGE_OBJECTS ${objects})
   set_property(GLOBAL APPEND PROPERTY ROBOMILL_STAGE_LIBRARIES ${S_LIBRARIES})
 
   foreach(header IN LISTS S_PUBLIC_HEADERS)

@@ -28,7 +28,7 @@ bool on_one_line(const Json& json) {
          });
 }
 
-void append(std::string& out, const Json& json, std::size_t depth) {
+void append_value(std::string& out, const Json& json, std::size_t depth) {
   if (is_plain(json) || json.empty()) {
     out += plain_text(json);
     return;
@@ -44,7 +44,7 @@ void append(std::string& out, const Json& json, std::size_t depth) {
     first = false;
     if (!one_line) out += line_end;
     if (is_object) out.append(plain_text(Json(key))).append(": ");
-    append(out, value, depth + 1);
+    append_value(out, value, depth + 1);
   }
   if (!one_line) out += line_end.substr(0, line_end.size() - 2);
   out += is_object ? '}' : ']';
@@ -126,7 +126,7 @@ std::string plain_text(const Json& json) {
 
 std::string dump(const Json& json) {
   std::string out;
-  append(out, json, 0);
+  append_value(out, json, 0);
   out += '\n';
   return out;
 }

@@ -165,7 +165,7 @@ std::vector<MatVariable> read_variables(const std::string& file, std::size_t fil
   return out;
 }
 
-void append(std::string& out, const void* data, std::size_t bytes) {
+void append_bytes(std::string& out, const void* data, std::size_t bytes) {
   out.append(static_cast<const char*>(data), bytes);
 }
 
@@ -175,10 +175,10 @@ std::string pack(const std::vector<MatVariable>& variables) {
   for (const MatVariable& variable : variables) {
     const std::array<Eigen::Index, 4> sizes = {static_cast<Eigen::Index>(variable.name.size()), variable.re.rows(),
                                                variable.re.cols(), variable.im.size()};
-    append(out, sizes.data(), sizeof(sizes));
+    append_bytes(out, sizes.data(), sizeof(sizes));
     out += variable.name;
     for (const Eigen::MatrixXd* part : {&variable.re, &variable.im}) {
-      append(out, part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
+      append_bytes(out, part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
     }
   }
   return out;
