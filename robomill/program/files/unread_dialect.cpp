@@ -13,14 +13,14 @@ namespace {
 constexpr std::size_t most_lines = 400;
 
 /// Where a sign stands in a line.
-enum class Place {
+enum class OfLine {
   begin,     ///< after blanks and a line's number
   anywhere,  ///< as a word of its own where it begins or ends with a letter or digit
 };
 
 struct Sign {
   std::string_view text;  ///< in upper case; a # stands for a digit
-  Place place = Place::anywhere;
+  OfLine place = OfLine::anywhere;
   bool strong = true;  ///< shows the dialect whatever the file's name ends with
 };
 
@@ -37,12 +37,12 @@ constexpr std::string_view what_it_came_from =
 
 constexpr std::string_view klartext_endings[] = {".h"};
 constexpr Sign klartext_signs[] = {
-    {"BEGIN PGM", Place::begin},     {"END PGM", Place::begin},     {"BLK FORM", Place::begin},
-    {"TOOL CALL", Place::begin},     {"CYCL DEF", Place::begin},    {"CYCL CALL", Place::begin},
-    {"PLANE SPATIAL", Place::begin}, {"FN #", Place::begin, false}, {"L X", Place::begin, false},
-    {"L Y", Place::begin, false},    {"L Z", Place::begin, false},  {"L IX", Place::begin, false},
-    {"L IZ", Place::begin, false},   {"CC X", Place::begin, false}, {"LBL", Place::begin, false},
-    {"FMAX", Place::anywhere, false}};
+    {"BEGIN PGM", OfLine::begin},     {"END PGM", OfLine::begin},     {"BLK FORM", OfLine::begin},
+    {"TOOL CALL", OfLine::begin},     {"CYCL DEF", OfLine::begin},    {"CYCL CALL", OfLine::begin},
+    {"PLANE SPATIAL", OfLine::begin}, {"FN #", OfLine::begin, false}, {"L X", OfLine::begin, false},
+    {"L Y", OfLine::begin, false},    {"L Z", OfLine::begin, false},  {"L IX", OfLine::begin, false},
+    {"L IZ", OfLine::begin, false},   {"CC X", OfLine::begin, false}, {"LBL", OfLine::begin, false},
+    {"FMAX", OfLine::anywhere, false}};
 
 constexpr std::string_view sinumerik_endings[] = {".mpf", ".spf", ".arc"};
 constexpr Sign sinumerik_signs[] = {{"%_N_"},
@@ -51,8 +51,8 @@ constexpr Sign sinumerik_signs[] = {{"%_N_"},
                                     {"TRAFOOF"},
                                     {"CYCLE8##"},
                                     {"SUPA"},
-                                    {"DEF REAL", Place::begin},
-                                    {"DEF INT", Place::begin},
+                                    {"DEF REAL", OfLine::begin},
+                                    {"DEF INT", OfLine::begin},
                                     {"COMPCAD"},
                                     {"COMPOF"},
                                     {"A3="},
@@ -62,53 +62,53 @@ constexpr Sign sinumerik_signs[] = {{"%_N_"},
                                     {"T=\""},
                                     {"G710"},
                                     {"G700"},
-                                    {"G71", Place::anywhere, false},
-                                    {"G70", Place::anywhere, false},
-                                    {"G500", Place::anywhere, false},
-                                    {"CR=", Place::anywhere, false},
-                                    {"MSG(", Place::anywhere, false},
-                                    {"M17", Place::anywhere, false},
-                                    {"L#", Place::begin, false}};
+                                    {"G71", OfLine::anywhere, false},
+                                    {"G70", OfLine::anywhere, false},
+                                    {"G500", OfLine::anywhere, false},
+                                    {"CR=", OfLine::anywhere, false},
+                                    {"MSG(", OfLine::anywhere, false},
+                                    {"M17", OfLine::anywhere, false},
+                                    {"L#", OfLine::begin, false}};
 
 constexpr std::string_view krl_endings[] = {".src", ".dat", ".sub"};
-constexpr Sign krl_signs[] = {{"&ACCESS", Place::begin},
-                              {"&REL", Place::begin},
+constexpr Sign krl_signs[] = {{"&ACCESS", OfLine::begin},
+                              {"&REL", OfLine::begin},
                               {"$VEL."},
                               {"$TOOL"},
                               {"$BASE"},
                               {"BAS (#"},
                               {"BAS(#"},
-                              {"PTP {", Place::begin},
-                              {"LIN {", Place::begin},
-                              {"CIRC {", Place::begin},
-                              {"SPTP", Place::begin},
-                              {"SLIN", Place::begin},
-                              {"PTP", Place::begin},
-                              {"LIN", Place::begin, false},
-                              {"DEF", Place::begin, false},
-                              {";FOLD", Place::begin}};
+                              {"PTP {", OfLine::begin},
+                              {"LIN {", OfLine::begin},
+                              {"CIRC {", OfLine::begin},
+                              {"SPTP", OfLine::begin},
+                              {"SLIN", OfLine::begin},
+                              {"PTP", OfLine::begin},
+                              {"LIN", OfLine::begin, false},
+                              {"DEF", OfLine::begin, false},
+                              {";FOLD", OfLine::begin}};
 
 constexpr std::string_view tp_endings[] = {".ls"};
-constexpr Sign tp_signs[] = {{"/PROG", Place::begin}, {"/ATTR", Place::begin}, {"/MN", Place::begin}};
+constexpr Sign tp_signs[] = {{"/PROG", OfLine::begin}, {"/ATTR", OfLine::begin}, {"/MN", OfLine::begin}};
 
 constexpr std::string_view rapid_endings[] = {".mod", ".modx", ".prg", ".sys"};
 constexpr Sign rapid_signs[] = {{"MOVEL"},
                                 {"MOVEJ"},
                                 {"MOVEC"},
                                 {"MOVEABSJ"},
-                                {"ENDPROC", Place::begin},
-                                {"ENDMODULE", Place::begin},
-                                {"PERS TOOLDATA", Place::begin},
-                                {"MODULE", Place::begin}};
+                                {"ENDPROC", OfLine::begin},
+                                {"ENDMODULE", OfLine::begin},
+                                {"PERS TOOLDATA", OfLine::begin},
+                                {"MODULE", OfLine::begin}};
 
 constexpr std::string_view inform_endings[] = {".jbi"};
-constexpr Sign inform_signs[] = {{"/JOB", Place::begin}, {"///RCONF", Place::begin}, {"MOVL ", Place::begin}};
+constexpr Sign inform_signs[] = {{"/JOB", OfLine::begin}, {"///RCONF", OfLine::begin}, {"MOVL ", OfLine::begin}};
 
 constexpr std::string_view urscript_endings[] = {".script", ".urscript"};
 constexpr Sign urscript_signs[] = {{"MOVEL(P["}, {"MOVEJ(["}, {"MOVEP(P["}, {"SERVOJ("}};
 
 constexpr std::string_view apt_endings[] = {".ncl", ".aptsource"};
-constexpr Sign apt_signs[] = {{"GOTO/"}, {"FEDRAT/"}, {"PARTNO", Place::begin}, {"CUTTER/"}};
+constexpr Sign apt_signs[] = {{"GOTO/"}, {"FEDRAT/"}, {"PARTNO", OfLine::begin}, {"CUTTER/"}};
 
 constexpr std::array<Dialect, 8> dialects = {{
     {klartext_endings, klartext_signs, "is a Heidenhain conversational program (Klartext), which is not read yet",
@@ -149,7 +149,7 @@ bool is_in_comments(const Sign& sign) {
 }
 
 bool shows(std::string_view line, const Sign& sign) {
-  if (sign.place == Place::begin) return stands_at(line, 0, sign.text);
+  if (sign.place == OfLine::begin) return stands_at(line, 0, sign.text);
   for (std::size_t at = 0; at + sign.text.size() <= line.size(); ++at) {
     if (stands_at(line, at, sign.text)) return true;
   }
