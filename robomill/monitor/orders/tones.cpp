@@ -5,7 +5,7 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double memory_s = 1.0, first_s = 0.3;
+constexpr double memory_s = 1.0, learning_s = 0.3;
 constexpr double growth = 4.0;     // of the energy
 constexpr std::size_t beside = 2;  // cells, to each side
 
@@ -18,7 +18,7 @@ void Tones::learn(std::span<const double> energy) noexcept {
 }
 
 bool Tones::stood(std::size_t cell, std::span<const double> energy) const noexcept {
-  if (static_cast<double>(learnt_) * hop_s_ < first_s) return false;
+  if (static_cast<double>(learnt_) * hop_s_ < learning_s) return false;
   double now = 0.0;
   double before = 0.0;
   for (std::size_t i = cell > beside ? cell - beside : 0; i < std::min(usual_.size(), cell + beside + 1); ++i) {
