@@ -26,13 +26,12 @@
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/process/files/forces_toml.hpp"
+#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t longest_document = std::uintmax_t{1} << 20;
 
 /// The file of an error's place, "lobes.toml:14".
 fs::path file_of(const InvalidInput& error) {

@@ -19,7 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t longest_document = std::uintmax_t{1} << 20;
 constexpr std::size_t longest_path = 1024;
 constexpr std::size_t most_documents = 64, most_files = 10'000;  // a job of hits names hundreds
 constexpr std::size_t most_bytes = std::size_t{8} << 20;         // of all documents

@@ -1,10 +1,14 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
 // Method: robomill/serve/README.md, "Jobs"
 
 namespace robomill::serve {
+
+/// Of a TOML document that is read for what it names [byte].
+inline constexpr std::uintmax_t longest_document = std::uintmax_t{1} << 20;
 
 /// The files that a TOML document names, and those that the documents among them name: every text of it that leads from
 /// its folder to a file that is there. None of a file that is no such document.

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-enum class State { queued, running, done, failed, cancelled };
+enum class RunState { queued, running, done, failed, cancelled };
 constexpr std::array<const char*, 5> state_names = {"queued", "running", "done", "failed", "cancelled"};
 
 }  // namespace
@@ -27,14 +27,14 @@ struct JobRunner::Job {
   JobRequest request;
   std::atomic<bool> stop{false};
   // The rest under the runner's mutex.
-  State state = State::queued;
+  RunState state = RunState::queued;
   std::string task = {};
   double fraction = 0.0;
   Clock::time_point started = {}, ended = {}, announced = {};
   io::Json error = nullptr;
   JobRun result = {};
 
-  [[nodiscard]] bool is_over() const { return state != State::queued && state != State::running; }
+  [[nodiscard]] bool is_over() const { return state != RunState::queued && state != RunState::running; }
   [[nodiscard]] io::Json json() const {
     const bool began = started != Clock::time_point();
     const auto seconds = std::chrono::duration<double>((is_over() ? ended : Clock::now()) - started).count();
@@ -45,9 +45,9 @@ struct JobRunner::Job {
             {"output", io::text_or_null(request.output)},
             {"options", request.options},
             {"state", state_names[static_cast<std::size_t>(state)]},
-            {"exit", state == State::done     ? io::Json(result.outcome.shortfall.empty() ? 0 : 3)
-                     : state == State::failed ? io::Json(1)
-                                              : io::Json(nullptr)},
+            {"exit", state == RunState::done     ? io::Json(result.outcome.shortfall.empty() ? 0 : 3)
+                     : state == RunState::failed ? io::Json(1)
+                                                 : io::Json(nullptr)},
             {"task", task},
             {"fraction", fraction},
             {"seconds", began ? io::number(seconds) : io::Json(nullptr)},
@@ -101,7 +101,7 @@ std::optional<int> JobRunner::submit(const JobRequest& request) {
 }
 
 void JobRunner::work(const std::stop_token& stop) {
-  const auto is_queued = [](const std::shared_ptr<Job>& job) { return job->state == State::queued; };
+  const auto is_queued = [](const std::shared_ptr<Job>& job) { return job->state == RunState::queued; };
   for (;;) {
     std::shared_ptr<Job> job;
     {
@@ -109,7 +109,7 @@ void JobRunner::work(const std::stop_token& stop) {
       arrived_.wait(lock, stop, [&] { return std::ranges::any_of(jobs_, is_queued); });
       if (stop.stop_requested()) return;
       job = *std::ranges::find_if(jobs_, is_queued);
-      job->state = State::running;
+      job->state = RunState::running;
       job->started = Clock::now();
     }
     run(job);
@@ -143,7 +143,7 @@ void JobRunner::run(const std::shared_ptr<Job>& job) {
     if (due) announce(*job);
   };
   JobRun result;
-  State state = State::failed;
+  RunState state = RunState::failed;
   io::Json error = nullptr;
   try {
     if (job->stop) throw Interrupted();
@@ -151,13 +151,13 @@ void JobRunner::run(const std::shared_ptr<Job>& job) {
     result.outcome.shortfall = client_text(std::move(result.outcome.shortfall), root_);
     result.outcome.summary = without_root(std::move(result.outcome.summary), root_);
     result.outcome.report = without_root(std::move(result.outcome.report), root_);
-    state = State::done;
+    state = RunState::done;
   } catch (const InvalidInput& found) {
     error = error_object(found, root_);
   } catch (const AnsweredElsewhere& found) {
     error = found.error();
   } catch (const Interrupted&) {
-    state = State::cancelled;
+    state = RunState::cancelled;
   } catch (const std::bad_alloc&) {
     error = error_object("not enough memory for this input");
   } catch (const std::exception& found) {
@@ -168,7 +168,7 @@ void JobRunner::run(const std::shared_ptr<Job>& job) {
     job->result = std::move(result);
     job->error = std::move(error);
     job->ended = Clock::now();
-    job->fraction = state == State::done ? 1.0 : job->fraction;
+    job->fraction = state == RunState::done ? 1.0 : job->fraction;
     forget_old();
   });
   announce(*job);
@@ -233,8 +233,8 @@ bool JobRunner::cancel(int id) {
     job = find(id);
     if (!job) return false;
     job->stop = true;
-    if (job->state == State::queued) {
-      job->state = State::cancelled;
+    if (job->state == RunState::queued) {
+      job->state = RunState::cancelled;
       forget_old();
     }
   }
