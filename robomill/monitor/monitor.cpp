@@ -34,12 +34,12 @@ constexpr Name<BlindReason> reason_names[] = {{"none", BlindReason::none},
 constexpr Name<SynchronousChatter> synchronous_names[] = {{"none", SynchronousChatter::none},
                                                           {"locked", SynchronousChatter::locked},
                                                           {"period-doubling", SynchronousChatter::period_doubling}};
-constexpr Name<Fault> fault_names[] = {{"not-finite", Fault::not_finite},
-                                       {"stuck", Fault::stuck},
-                                       {"clipped", Fault::clipped},
-                                       {"dead-channel", Fault::dead_channel},
-                                       {"wrong-sample-rate", Fault::wrong_sample_rate},
-                                       {"speed-unknown", Fault::speed_unknown}};
+constexpr Name<Fault> names_of_faults[] = {{"not-finite", Fault::not_finite},
+                                           {"stuck", Fault::stuck},
+                                           {"clipped", Fault::clipped},
+                                           {"dead-channel", Fault::dead_channel},
+                                           {"wrong-sample-rate", Fault::wrong_sample_rate},
+                                           {"speed-unknown", Fault::speed_unknown}};
 
 constexpr double fastest_min_speed_rpm = 100'000.0;
 
@@ -280,7 +280,7 @@ std::string_view to_string(SynchronousChatter kind) {
   return name_in(synchronous_names, kind);
 }
 std::string_view to_string(Fault fault) {
-  return name_in(fault_names, fault);
+  return name_in(names_of_faults, fault);
 }
 
 }  // namespace robomill::monitor

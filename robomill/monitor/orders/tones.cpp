@@ -6,8 +6,8 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double memory_s = 1.0, learning_s = 0.3;
-constexpr double growth = 4.0;     // of the energy
-constexpr std::size_t beside = 2;  // cells, to each side
+constexpr double known_growth = 4.0;  // of the energy
+constexpr std::size_t beside = 2;     // cells, to each side
 
 }  // namespace
 
@@ -25,7 +25,7 @@ bool Tones::stood(std::size_t cell, std::span<const double> energy) const noexce
     now += energy[i];
     before += usual_[i];
   }
-  return now < growth * before;
+  return now < known_growth * before;
 }
 
 }  // namespace robomill::monitor
