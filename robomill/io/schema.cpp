@@ -152,8 +152,16 @@ class Definitions {
  private:
   /// Of one value.
   Json value_schema(const Key& key) {
+    Json out = value_schema(key, key.holds);
+    if (key.also.empty()) return out;
+    Json any = Json::array({std::move(out)});
+    for (const Holds other : key.also) any.push_back(value_schema(key, other));
+    return {{"anyOf", std::move(any)}};
+  }
+
+  Json value_schema(const Key& key, Holds holds) {
     Json out = Json::object();
-    switch (key.holds) {
+    switch (holds) {
       case Holds::number:
         out["type"] = "number";
         break;

@@ -52,13 +52,28 @@ struct Row {
     key.rule.hint = std::move(hint);
     return *this;
   }
-  Row& below(double high) {
-    key.rule.highest = high;
+  Row& below(double high, std::string hint = {}) {
     key.rule.below = true;
-    return *this;
+    return at_most(high, std::move(hint));
   }
   Row& entries(std::size_t count) {
     key.rule.entries = count;
+    return *this;
+  }
+  /// One value in place of a list.
+  Row& or_one() {
+    key.or_one = true;
+    return *this;
+  }
+  Row& or_also(Holds other) {
+    key.also.push_back(other);
+    return *this;
+  }
+  /// @param code  (TomlFile&, path of the key, T&), in place of the member's reading; called also where the key is
+  /// absent
+  template <class F>
+  Row& read_by(F code) {
+    read = [code](TomlFile& file, const std::string& path, const Row&, T& out) { code(file, path, out); };
     return *this;
   }
   /// Null where the value is not known; a text where it is empty.
@@ -192,7 +207,7 @@ template <class T, class U>
   return out;
 }
 
-/// A key that code reads, and no row: its value depends on other keys.
+/// A key that code reads, and no member's row: its value depends on other keys.
 /// @param lists  1: a list of them
 template <class T>
 [[nodiscard]] Row<T> declared(std::string name, Holds holds, std::string meaning, int lists = 0) {
@@ -243,7 +258,7 @@ class Schema {
       if (use == Use::written) {
         row.key.required = row.always;
       } else if (row.read && !row.key.required) {
-        row.key.default_value = row.write(fresh, row);
+        if (Json value = row.write(fresh, row); !value.is_discarded()) row.key.default_value = std::move(value);
       }
       info_.keys.push_back(row.key);
     }

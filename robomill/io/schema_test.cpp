@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <string>
 
 #include "robomill/base/units.hpp"
@@ -167,6 +168,45 @@ TEST(Schema, IsAJsonSchemaOfWhatItWrites) {
   EXPECT_EQ(keys["kind"]["default"], "flat-end");
   EXPECT_EQ(keys["spindle_speed_rpm"]["minItems"], 2);
   EXPECT_EQ(schema["$defs"]["mode"]["properties"]["damping_ratio"]["default"], 0.02);
+}
+
+struct Sensor {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  std::vector<std::string> columns = {};
+};
+
+/// Columns by their names or by their numbers.
+const Schema<Sensor>& sensor_table() {
+  static const Schema<Sensor> table("sensor", "where it stands, and its columns",
+                                    {key("origin_mm", &Sensor::origin_m, "in the flange's frame").entries(3),
+                                     declared<Sensor>("columns", Holds::text, "names, or numbers from 1", 1)
+                                         .or_one()
+                                         .or_also(Holds::integer)
+                                         .read_by([](TomlFile& file, const std::string& path, Sensor& out) {
+                                           int number = 0;
+                                           if (file.is_number(path)) file.integer(path, "columns", number);
+                                           out.columns = {std::to_string(number)};
+                                         })});
+  return table;
+}
+
+TEST(Schema, ReadsAPlaceAndByCodeWhatHoldsMoreThanOneKind) {
+  const auto sensor = [](const std::string& text) {
+    TomlFile file(TomlSource("s.toml", text));
+    Sensor out;
+    sensor_table().read(file, "sensor", out);
+    static_cast<void>(file.done());
+    return out;
+  };
+  const Sensor read = sensor("[sensor]\norigin_mm = [1, 2, 3]\ncolumns = 4\n");
+  EXPECT_EQ(read.origin_m, Eigen::Vector3d(1e-3, 2.0 * units::mm, 3.0 * units::mm));
+  EXPECT_EQ(read.columns, std::vector<std::string>{"4"});
+  EXPECT_EQ(rejection([&] { static_cast<void>(sensor("[sensor]\norigin_mm = [1, 2]\n")); }),
+            "s.toml:2: sensor.origin_mm: must hold 3 entries; it holds 2");
+  const Json columns = json_schema(sensor_table().info())["properties"]["columns"];
+  const Json one = {{"anyOf", Json::array({{{"type", "string"}}, {{"type", "integer"}}})}};
+  EXPECT_EQ(columns["anyOf"], Json::array({one, {{"type", "array"}, {"items", one}}}));
+  EXPECT_FALSE(columns.contains("default"));
 }
 
 TEST(Schema, IsATableOfTheDocuments) {

@@ -102,14 +102,6 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
                 std::vector<int>& out);
 bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
                 std::vector<std::string>& out);
-template <class M>
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                std::optional<M>& out) {
-  M value{};
-  if (!read_value(file, path, member, factor, key, value)) return false;
-  out = std::move(value);
-  return true;
-}
 template <class M, std::size_t n>
 bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
                 std::array<M, n>& out) {
@@ -117,6 +109,22 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
   if (!read_value(file, path, member, factor, key, values)) return false;
   if (values.size() != n) throw file.reject(path, "must hold " + std::to_string(n) + " numbers");
   std::copy(values.begin(), values.end(), out.begin());
+  return true;
+}
+template <int n>
+bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
+                Eigen::Matrix<double, n, 1>& out) {
+  std::array<double, n> values;
+  if (!read_value(file, path, member, factor, key, values)) return false;
+  out = Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.data());
+  return true;
+}
+template <class M>
+bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
+                std::optional<M>& out) {
+  M value{};
+  if (!read_value(file, path, member, factor, key, value)) return false;
+  out = std::move(value);
   return true;
 }
 

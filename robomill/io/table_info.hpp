@@ -36,12 +36,13 @@ struct TableInfo;
 struct Key {
   std::string name = {};
   Holds holds = Holds::text;
-  int lists = 0;           ///< 1: a list of them, 2: a list of lists
-  bool named = false;      ///< an object of them, by names that differ from document to document
-  bool or_one = false;     ///< in place of a list one value, for all of its entries
-  bool required = false;   ///< a reader rejects a table without it; a writer always writes it
-  bool nullable = false;   ///< null: not known, none; of a list its entries
-  bool null_list = false;  ///< the list itself may be null
+  int lists = 0;                 ///< 1: a list of them, 2: a list of lists
+  bool named = false;            ///< an object of them, by names that differ from document to document
+  bool or_one = false;           ///< in place of a list one value, for all of its entries
+  std::vector<Holds> also = {};  ///< what a value may be instead: a column's number in place of its name
+  bool required = false;         ///< a reader rejects a table without it; a writer always writes it
+  bool nullable = false;         ///< null: not known, none; of a list its entries
+  bool null_list = false;        ///< the list itself may be null
   Rule rule = {};
   std::vector<std::string> words = {};  ///< of Holds::word
   const TableInfo* table = nullptr;     ///< of Holds::table
