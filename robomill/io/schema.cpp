@@ -46,7 +46,7 @@ void require_all_kept(const TomlFile& file, const std::string& path, const Rule&
 
 void require_entries(const TomlFile& file, const std::string& path, const Rule& rule, std::size_t entries) {
   if (rule.entries == 0 || rule.entries == entries) return;
-  throw file.reject(path, fmt::format("must hold {} entries; it holds {}", rule.entries, entries));
+  throw file.reject(path, fmt::format("must hold {} entries; it holds {}", rule.entries, entries), rule.hint);
 }
 
 }  // namespace

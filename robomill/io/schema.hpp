@@ -1,5 +1,6 @@
 #pragma once
 // For .cpp files inside the library, as json.hpp.
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -38,26 +39,28 @@ struct Row {
     key.hint = std::move(hint);
     return *this;
   }
-  Row& above(double low) {
-    key.rule.lowest = low;
+  Row& above(double low, std::string hint = {}) {
     key.rule.above = true;
-    return *this;
+    return at_least(low, std::move(hint));
   }
-  Row& at_least(double low) {
+  Row& at_least(double low, std::string hint = {}) {
     key.rule.lowest = low;
+    if (!hint.empty()) key.rule.hint = std::move(hint);
     return *this;
   }
   Row& at_most(double high, std::string hint = {}) {
     key.rule.highest = high;
-    key.rule.hint = std::move(hint);
+    if (!hint.empty()) key.rule.hint = std::move(hint);
     return *this;
   }
   Row& below(double high, std::string hint = {}) {
     key.rule.below = true;
     return at_most(high, std::move(hint));
   }
-  Row& entries(std::size_t count) {
+  /// @param hint  what they are
+  Row& entries(std::size_t count, std::string hint = {}) {
     key.rule.entries = count;
+    if (!hint.empty()) key.rule.hint = std::move(hint);
     return *this;
   }
   /// One value in place of a list.
@@ -258,7 +261,7 @@ class Schema {
       if (use == Use::written) {
         row.key.required = row.always;
       } else if (row.read && !row.key.required) {
-        if (Json value = row.write(fresh, row); !value.is_discarded()) row.key.default_value = std::move(value);
+        row.key.default_value = default_of(row.write(fresh, row), row.key.rule);
       }
       info_.keys.push_back(row.key);
     }
@@ -302,6 +305,13 @@ class Schema {
   }
 
  private:
+  /// None where it is not known. A number that the rule rejects stands for none too, as does an empty text or list.
+  [[nodiscard]] static Json default_of(Json value, const Rule& rule) {
+    const auto rejected = [&](const Json& one) { return one.is_number() && !rule.keeps(one.template get<double>()); };
+    if (value.is_discarded() || value.empty() || value == "" || rejected(value)) return nullptr;
+    return value.is_array() && std::ranges::any_of(value, rejected) ? Json() : value;
+  }
+
   std::vector<Row<T>> rows_;
   TableInfo info_;
 };

@@ -171,22 +171,25 @@ TEST(Schema, IsAJsonSchemaOfWhatItWrites) {
 }
 
 struct Sensor {
+  int port = 0;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
   std::vector<std::string> columns = {};
 };
 
 /// Columns by their names or by their numbers.
 const Schema<Sensor>& sensor_table() {
-  static const Schema<Sensor> table("sensor", "where it stands, and its columns",
-                                    {key("origin_mm", &Sensor::origin_m, "in the flange's frame").entries(3),
-                                     declared<Sensor>("columns", Holds::text, "names, or numbers from 1", 1)
-                                         .or_one()
-                                         .or_also(Holds::integer)
-                                         .read_by([](TomlFile& file, const std::string& path, Sensor& out) {
-                                           int number = 0;
-                                           if (file.is_number(path)) file.integer(path, "columns", number);
-                                           out.columns = {std::to_string(number)};
-                                         })});
+  static const Schema<Sensor> table(
+      "sensor", "where it stands, and its columns",
+      {key("port", &Sensor::port, "none: any").at_least(1.0),
+       key("origin_mm", &Sensor::origin_m, "in the flange's frame").entries(3, "[x, y, z]"),
+       declared<Sensor>("columns", Holds::text, "names, or numbers from 1", 1)
+           .or_one()
+           .or_also(Holds::integer)
+           .read_by([](TomlFile& file, const std::string& path, Sensor& out) {
+             int number = 0;
+             if (file.is_number(path)) file.integer(path, "columns", number);
+             out.columns = {std::to_string(number)};
+           })});
   return table;
 }
 
@@ -202,11 +205,12 @@ TEST(Schema, ReadsAPlaceAndByCodeWhatHoldsMoreThanOneKind) {
   EXPECT_EQ(read.origin_m, Eigen::Vector3d(1e-3, 2.0 * units::mm, 3.0 * units::mm));
   EXPECT_EQ(read.columns, std::vector<std::string>{"4"});
   EXPECT_EQ(rejection([&] { static_cast<void>(sensor("[sensor]\norigin_mm = [1, 2]\n")); }),
-            "s.toml:2: sensor.origin_mm: must hold 3 entries; it holds 2");
-  const Json columns = json_schema(sensor_table().info())["properties"]["columns"];
+            "s.toml:2: sensor.origin_mm: must hold 3 entries; it holds 2. [x, y, z]");
+  const Json keys = json_schema(sensor_table().info())["properties"], &columns = keys["columns"];
   const Json one = {{"anyOf", Json::array({{{"type", "string"}}, {{"type", "integer"}}})}};
   EXPECT_EQ(columns["anyOf"], Json::array({one, {{"type", "array"}, {"items", one}}}));
   EXPECT_FALSE(columns.contains("default"));
+  EXPECT_FALSE(keys["port"].contains("default")) << "a value that the rule rejects is no default";
 }
 
 TEST(Schema, IsATableOfTheDocuments) {
