@@ -36,9 +36,9 @@ struct MqttSettings {
   [[nodiscard]] int port_or_default() const { return port != 0 ? port : (tls ? 8883 : 1883); }
 };
 
-/// [act]: what to do about chatter. Rules act on the robot through live/; none does without that table.
+/// [act]: what to do about chatter. Rules act on the robot through live/.
 enum class ActRule {
-  none,
+  none,    ///< without that table
   reduce,  ///< the feed, to reduce_to: it bounds the damage and does not end regenerative chatter
   hold,    ///< the motion, with a retract: a tool that stands still in the cut rubs
   speed    ///< the spindle, to the suggested speed; the feed follows, so that feed per tooth stays
@@ -46,9 +46,9 @@ enum class ActRule {
 inline constexpr Name<ActRule> act_rule_names[] = {
     {"none", ActRule::none}, {"reduce", ActRule::reduce}, {"hold", ActRule::hold}, {"speed", ActRule::speed}};
 struct ActSettings {
-  ActRule rule = ActRule::none;  ///< of a table that names none: speed
-  double reduce_to = 0.5;        ///< of the programmed feed, in (0, 1)
-  double retract_m = 0.0;        ///< out of the cut, along the tool's axis; hold: > 0, required
+  ActRule rule = ActRule::speed;
+  double reduce_to = 0.5;  ///< of the programmed feed, in (0, 1)
+  double retract_m = 0.0;  ///< out of the cut, along the tool's axis; hold: > 0, required
   /// Of the spindle: speeds that tool and machine allow, lowest < highest. 0: from half the speed at which chatter was
   /// first detected up to that speed.
   double lowest_rad_per_s = 0.0, highest_rad_per_s = 0.0;
@@ -67,7 +67,7 @@ struct MonitorFile {
   std::filesystem::path modes = {};  ///< process.modes; empty: none
   std::filesystem::path lobes = {};  ///< process.lobes, or the document itself where it holds the cut; empty: none
   double timeout_s = 1.0;            ///< without samples for so long, the state is blind; > 0
-  ActSettings act = {};
+  ActSettings act = {.rule = ActRule::none};
   MqttSettings mqtt = {};
   int metrics_port = -1;  ///< -1: none; 0: any that is free
   std::string metrics_host = "127.0.0.1";

@@ -125,7 +125,7 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
          "m.toml:5: detector.hop_ms = 250000 ms; must be at most 1000000 samples long. Is it in us? 25 ms is usual");
   expect("[detector]\nwindow_ms = 0.05\nhop_ms = 25\n",
          "m.toml:5: detector.window_ms = 0.05 ms; must be at least 32 samples long. Is it in s? 50 ms is usual");
-  expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be in [2, 64]");
+  expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be >= 2 and <= 64");
   expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing; must be finite");
   expect("[detector]\nkind = \"magic\"\n", "must be one of \"comb-cusum\", \"energy-entropy\"");
   expect("[detector]\nfalse_alarms_per_hour = 0\n", "m.toml:5: detector.false_alarms_per_hour = 0");
@@ -136,13 +136,13 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
       "[process]\nspindle_speed_rpm = 20\n",
       "m.toml:5: process.spindle_speed_rpm = 20 rpm; must be at least the speed below which the spindle stands still "
       "and nothing is judged. Is it in 1/s?");
-  expect("[process]\nmin_speed_rpm = 0\n", "m.toml:5: process.min_speed_rpm = 0 rpm; must be between 1 and 100000 rpm");
+  expect("[process]\nmin_speed_rpm = 0\n", "m.toml:5: process.min_speed_rpm = 0 rpm; must be >= 1 and <= 100000");
   expect("[mqtt]\nport = 70000\n", "m.toml:5: mqtt.port = 70000");
   expect("[mqtt]\nca_file = \"ca.pem\"\n", "needs mqtt.tls = true");
   expect("[mqtt]\ntls = true\nkey_file = \"k\"\n", "go together");
   expect("[mqtt]\npassword_file = \"k\"\n", "needs mqtt.user");
-  expect("[mqtt]\nqos = 3\n", "must be 0, 1 or 2");
-  expect("[mqtt]\nconnect_timeout_s = -1\n", "m.toml:5: mqtt.connect_timeout_s = -1 s; must lie between 0 and 86400");
+  expect("[mqtt]\nqos = 3\n", "m.toml:5: mqtt.qos = 3; must be >= 0 and <= 2");
+  expect("[mqtt]\nconnect_timeout_s = -1\n", "m.toml:5: mqtt.connect_timeout_s = -1 s; must be >= 0 and <= 86400");
   expect("[mqtt]\nevents_topic = \"a/#\"\n", "without + and #");
   expect("[mqtt]\ncommands_topic = \"a/+\"\n", "m.toml:5: mqtt.commands_topic = \"a/+\"; must be one topic");
   expect("[mqtt]\ntopic = \"a\"\ncommands_topic = \"a\"\n", "must differ from mqtt.topic");
@@ -199,6 +199,7 @@ TEST(MonitorToml, IsReadAsItWasWritten) {
   file.options.alarm_below = true;
   file.options.spindle_speed_rad_per_s = 4000.0 * units::rpm;
   file.options.min_speed_rad_per_s = 100.0 * units::rpm;
+  file.options.speed_std_ratio = 0.05;
   const std::string text = monitor_toml(file, "calibrated on\ntwo lines");
   EXPECT_EQ(text.rfind("# calibrated on\n# two lines\n[signal]\n", 0), 0U);
   EXPECT_NE(text.find("spindle_speed_rpm = 4000\n"), std::string::npos);
@@ -207,6 +208,7 @@ TEST(MonitorToml, IsReadAsItWasWritten) {
   EXPECT_EQ(back.options.kind, file.options.kind);
   EXPECT_EQ(back.options.threshold, file.options.threshold);
   EXPECT_EQ(back.options.alarm_below, true);
+  EXPECT_EQ(back.options.speed_std_ratio, 0.05);
   EXPECT_NEAR(back.options.min_speed_rad_per_s, file.options.min_speed_rad_per_s, 1e-12);
   EXPECT_EQ(back.options.tachometer_channel, 2);
   EXPECT_EQ(monitor_toml(back), monitor_toml(file));
@@ -268,7 +270,7 @@ TEST(RecordingsToml, RejectsWhatCannotCalibrate) {
   expect("[[recordings]]\nfile = \"c.wav\"\nlabel = \"loud\"\n", "r.toml:6: recordings[1].label = \"loud\"");
   expect(stable + "onset_s = 1\n", "is of chatter");
   expect(std::string(four) + "spindle_speed_rpm = 0\n", "must be > 0");
-  expect(std::string("[calibration]\nfalse_alarm_rate = 1\n") + four, "must be at least 0 and below 1");
+  expect(std::string("[calibration]\nfalse_alarm_rate = 1\n") + four, "must be >= 0 and < 1");
 }
 
 }  // namespace monitor_toml_test

@@ -8,32 +8,37 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-LabelledRecording read_recording(io::TomlFile& file, std::size_t index, double spindle_speed_rad_per_s) {
-  const std::string row = fmt::format("recordings[{}].", index);
-  LabelledRecording out;
-  out.spindle_speed_rad_per_s = spindle_speed_rad_per_s;
-  for (const char* key : {"file", "label"}) file.require(row + key);
-  file.path(row + "file", out.file);
-  file.choice<bool>(row + "label", {{"stable", false}, {"chatter", true}}, out.chatter);
-  if (file.number(row + "onset_s", "onset_s", 1.0, out.onset_s)) {
-    if (!out.chatter) throw file.reject(row + "onset_s", "is of chatter, and the label is \"stable\"");
-    if (!(out.onset_s >= 0.0)) throw file.reject(row + "onset_s", "must be >= 0");
-  }
-  if (file.number(row + "spindle_speed_rpm", "spindle_speed", units::rpm, out.spindle_speed_rad_per_s) &&
-      !(out.spindle_speed_rad_per_s > 0.0)) {
-    throw file.reject(row + "spindle_speed_rpm", "must be > 0");
-  }
-  return out;
-}
+constexpr Name<bool> labels[] = {{"stable", false}, {"chatter", true}};
 
 }  // namespace
+
+const io::Schema<RecordingsFile>& calibration_options_table() {
+  static const io::Schema<RecordingsFile> table(
+      "calibration", "how the threshold is chosen",
+      {io::key("false_alarm_rate", &RecordingsFile::false_alarm_rate,
+               "share of the stable recordings that may raise an alarm")
+           .at_least(0.0)
+           .below(1.0, "It is the share of the stable recordings that may raise an alarm")});
+  return table;
+}
+
+const io::Schema<LabelledRecording>& labelled_recording_table() {
+  static const io::Schema<LabelledRecording> table(
+      "recordings",
+      "recordings of which it is known whether they hold chatter; at least two of each: half of them verify",
+      {io::key("file", &LabelledRecording::file, "a recording").required(),
+       io::key("label", &LabelledRecording::chatter, labels, "what it holds").required(),
+       io::key("onset_s", &LabelledRecording::onset_s, "of chatter, where it is known").at_least(0.0),
+       io::key("spindle_speed_rpm", &LabelledRecording::spindle_speed_rad_per_s, "in place of the process'")
+           .above(0.0)});
+  return table;
+}
 
 RecordingsFile read_recordings(const io::TomlSource& source) {
   io::TomlFile file(source);
@@ -41,19 +46,17 @@ RecordingsFile read_recordings(const io::TomlSource& source) {
   out.monitor.path = source.path;
   out.monitor.options.kind = Kind::energy_entropy;
   out.monitor.options.threshold = 0.0;  // calibration sets it
-  read_signal(file, out.monitor);
-  read_process(file, out.monitor);
-  file.path("process.modes", out.monitor.modes);
-  file.path("process.lobes", out.monitor.lobes);
-  read_detector(file, out.monitor);
-  if (file.number("calibration.false_alarm_rate", "false_alarm_rate", 1.0, out.false_alarm_rate) &&
-      !(out.false_alarm_rate >= 0.0 && out.false_alarm_rate < 1.0)) {
-    throw file.reject("calibration.false_alarm_rate", "must be at least 0 and below 1",
-                      "It is the share of the stable recordings that may raise an alarm");
-  }
+  read_detection(file, out.monitor);
+  calibration_options_table().read(file, "calibration", out);
   if (file.tables("recordings") == 0) file.require("recordings", "Write [[recordings]] above each");
   for (std::size_t i = 0; i < file.tables("recordings"); ++i) {
-    out.recordings.push_back(read_recording(file, i, out.monitor.options.spindle_speed_rad_per_s));
+    const std::string row = fmt::format("recordings[{}]", i);
+    LabelledRecording& recording = out.recordings.emplace_back();
+    recording.spindle_speed_rad_per_s = out.monitor.options.spindle_speed_rad_per_s;
+    labelled_recording_table().read(file, row, recording);
+    if (!recording.chatter && file.has(row + ".onset_s")) {
+      throw file.reject(row + ".onset_s", "is of chatter, and the label is \"stable\"");
+    }
   }
   out.monitor.notes = file.done();
   check_options(file, out.monitor);
