@@ -119,7 +119,7 @@ TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
          "cell.toml:22: smoothing.sample_period_ms = 0 ms; must be > 0");
   expect("filters = 3", "max_duration_h = 0", "cell.toml:24: smoothing.max_duration_h = 0 h; must be > 0");
   expect("\"optimal\"", "\"fast\"", "cell.toml:23: smoothing.method = \"fast\"; must be one of \"verified\"");
-  expect("filters = 3", "filters = 4", "cell.toml:24: smoothing.filters = 4; must be 1, 2 or 3");
+  expect("filters = 3", "filters = 4", "cell.toml:24: smoothing.filters = 4; must be >= 1 and <= 3");
   expect("filters = 3", "filters = 1", "cell.toml:24: smoothing.filters = 1; must be at least 2");
   expect("drive_bandwidth_hz = 20", "drive_bandwidth_hz = [1, 2]",
          "cell.toml:26: smoothing.drive_bandwidth_hz: must hold one number for all joints or one a joint, 5");

@@ -253,11 +253,11 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   expect("{ mass_kg = 30 }", "{ center_mm = [0, 0, 0] }", "cell.toml:20: robot.links[5].mass_kg: is missing");
   expect("{ mass_kg = 30 }", "{ mass_kg = -30 }", "cell.toml:20: robot.links[5].mass_kg = -30 kg; must be >= 0");
   expect("[10, 20, 30, 1, 2, 3]", "[10, 20, 30]",
-         "cell.toml:19: robot.links[1].inertia_kg_m2: must be [xx, yy, zz, xy, xz, yz]");
+         "cell.toml:19: robot.links[1].inertia_kg_m2: must hold 6 entries; it holds 3. [xx, yy, zz, xy, xz, yz]");
   expect("[10, 20, 30, 1, 2, 3]", "[10, 20, -30, 1, 2, 3]",
          "cell.toml:19: robot.links[1].inertia_kg_m2: must be positive");
   expect("length_mm = 100", "length_mm = -100", "cell.toml:27: tool.length_mm = -100 mm; must be >= 0");
-  expect("[1270, 0, 776]", "[1270, 0]", "cell.toml:24: workpiece.origin_mm: must hold three numbers");
+  expect("[1270, 0, 776]", "[1270, 0]", "cell.toml:24: workpiece.origin_mm: must hold 3 entries; it holds 2");
   expect("machine = \"xyzac-trt\"", "rotary = \"straight\"",
          "cell.toml:29: program.rotary = \"straight\"; must be one of \"machine\", \"great-circle\"");
   expect("xyzac-trt", "xyzac", "cell.toml:29: program.machine = \"xyzac\"; must be one of \"xyzac-trt\"");

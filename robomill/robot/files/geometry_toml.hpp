@@ -4,10 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "robomill/io/table_info.hpp"
 #include "robomill/io/toml/file.hpp"
 #include "robomill/robot/collision.hpp"
 
 namespace robomill::robot {
+
+/// [geometry]
+[[nodiscard]] const io::TableInfo& geometry_table();
 
 /// [geometry] of a cell.toml, with the STL files that it names; none where there is no such table. The outline of the
 /// cutter's edges is not in it: the caller gives it.

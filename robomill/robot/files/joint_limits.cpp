@@ -65,6 +65,21 @@ void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>
 
 }  // namespace
 
+std::vector<JointLimitKey> joint_limit_keys() {
+  std::vector<JointLimitKey> out;
+  for (const JointLimit& limit : joint_limits) {
+    for (const Key& key : keys_of(limit)) {
+      out.push_back({key.key.substr(key.key.find('.') + 1),
+                     key.bare()
+                         ? "one number for each joint, in rad or m (/s …); takes precedence over those of a URDF. "
+                           "Not given: without limit"
+                     : key.for_revolute ? "the same, one for each revolute joint"
+                                        : "the same, one for each prismatic joint"});
+    }
+  }
+  return out;
+}
+
 std::vector<std::optional<double>> read_joint_limit(io::TomlFile& file, const JointLimit& limit,
                                                     const std::vector<bool>& prismatic,
                                                     std::vector<std::string>& notes) {

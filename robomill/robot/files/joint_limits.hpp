@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/io/schema.hpp"
 #include "robomill/io/toml/file.hpp"
 
 /// The limits of a cell's joints, as cell.toml gives them: robot.joint_max_velocity in rad/s or m/s, by joint, with a
@@ -17,6 +18,20 @@ struct JointLimit {
 };
 inline constexpr std::array<JointLimit, 5> joint_limits = {
     {{"min_position", 0}, {"max_position", 0}, {"max_velocity", 1}, {"max_acceleration", 2}, {"max_jerk", 3}}};
+
+/// A key of [robot] for a limit, and its meaning.
+struct JointLimitKey {
+  std::string name, meaning;
+};
+[[nodiscard]] std::vector<JointLimitKey> joint_limit_keys();
+
+/// Their rows in a table. read_joint_limit reads them.
+template <class T>
+void add_joint_limits(std::vector<io::Row<T>>& rows) {
+  for (const JointLimitKey& key : joint_limit_keys()) {
+    rows.push_back(io::declared<T>(key.name, io::Holds::number, key.meaning, 1).or_one());
+  }
+}
 
 /// @param prismatic  for every joint whether it is prismatic
 /// @param notes   gets a sentence where a number without unit is not likely to be in rad or m
