@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -16,6 +17,7 @@
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/hit_guess.hpp"
+#include "robomill/modal/files/hits_schema.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -30,44 +32,6 @@ struct Sensors {
   bool force_in_volts = false, response_in_volts = false;  ///< the sensitivities are given
 };
 
-void read_options(io::TomlFile& file, HitOptions& o) {
-  file.choice<ResponseKind>("acquisition.response",
-                            {{"acceleration", ResponseKind::acceleration},
-                             {"velocity", ResponseKind::velocity},
-                             {"displacement", ResponseKind::displacement}},
-                            o.response);
-  file.choice<Estimator>("acquisition.estimator", {{"H1", Estimator::h1}, {"H2", Estimator::h2}, {"Hv", Estimator::hv}},
-                         o.estimator);
-  file.choice<ExponentialWindow>(
-      "acquisition.exponential_window",
-      {{"automatic", ExponentialWindow::automatic}, {"off", ExponentialWindow::off}, {"on", ExponentialWindow::on}},
-      o.exponential_window);
-  file.boolean("acquisition.force_window", o.force_window);
-  file.boolean("acquisition.remove_added_damping", o.remove_added_damping);
-  const auto number = [&file](const std::string& key, const char* member, double& out) {
-    file.number("acquisition." + key, member, 1.0, out);
-  };
-  number("accelerometer_mass_kg", "accelerometer_mass_kg", o.accelerometer_mass_kg);
-  number("min_frequency_hz", "min_frequency_hz", o.min_frequency_hz);
-  number("max_frequency_hz", "max_frequency_hz", o.max_frequency_hz);
-  number("frequency_resolution_hz", "frequency_resolution_hz", o.frequency_resolution_hz);
-  number("force_overload_n", "force_overload_n", o.force_overload_n);
-  number(fmt::format("response_overload_{}", response_unit(o.response)), "response_overload", o.response_overload);
-  number("double_hit_limit", "double_hit_limit", o.double_hit_limit);
-  number("force_window_s", "force_window_s", o.force_window_s);
-  number("exponential_time_constant_s", "exponential_time_constant_s", o.exponential_time_constant_s);
-}
-
-/// Of a sensor in mV per unit; one that is mounted the other way round may be negative.
-/// @param record_mv  what a 1 of the record is
-bool sensitivity(io::TomlFile& file, const std::string& key, double record_mv, double unit, double& factor) {
-  double mv_per_unit = 0.0;
-  if (!file.number(key, key, 1.0, mv_per_unit)) return false;
-  if (mv_per_unit == 0.0) throw file.reject(key, "must not be 0", "It stands on the sensor's calibration sheet");
-  factor = record_mv / mv_per_unit * unit;
-  return true;
-}
-
 constexpr const char* force_key = "acquisition.force_mv_per_n";
 constexpr const char* response_in_g_key = "acquisition.response_mv_per_g";
 
@@ -75,25 +39,51 @@ std::string response_key(ResponseKind kind) {
   return fmt::format("acquisition.response_mv_per_{}", response_unit(kind));
 }
 
+/// Keys of sensors of other kinds.
+void reject_other_kinds(const io::TomlFile& file, ResponseKind kind) {
+  constexpr Name<ResponseKind> units_of[] = {{"m_per_s2", ResponseKind::acceleration},
+                                             {"g", ResponseKind::acceleration},
+                                             {"m_per_s", ResponseKind::velocity},
+                                             {"m", ResponseKind::displacement}};
+  for (const auto& [unit, of] : units_of) {
+    for (const char* name : {"response_mv_per_", "response_overload_"}) {
+      const std::string key = fmt::format("acquisition.{}{}", name, unit);
+      if (of == kind || !file.has(key)) continue;
+      throw file.reject(key, fmt::format("is of another sensor than {}", response_key(kind)),
+                        "acquisition.response says what the sensor measures: acceleration, velocity or displacement");
+    }
+  }
+}
+
+/// Of a sensor in mV per unit; one that is mounted the other way round may be negative.
+/// @param record_mv  what a 1 of the record is
+bool take_sensitivity(const io::TomlFile& file, const std::string& key, std::optional<double> mv_per_unit,
+                      double record_mv, double unit, double& factor) {
+  if (!mv_per_unit) return false;
+  if (*mv_per_unit == 0.0) throw file.reject(key, "must not be 0", "It stands on the sensor's calibration sheet");
+  factor = record_mv / *mv_per_unit * unit;
+  return true;
+}
+
 /// Without sensitivities the records are in N and the SI unit of the response.
-void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors) {
+void take_sensitivities(const io::TomlFile& file, const Acquisition& given, Sensors& sensors) {
   const char* const voltage = "acquisition.voltage_unit";
   const char* const response_voltage = "acquisition.response_voltage_unit";
-  double force_mv = 1e3;
-  file.choice<double>(voltage, {{"V", 1e3}, {"mV", 1.0}}, force_mv);
-  double response_mv = force_mv;
-  file.choice<double>(response_voltage, {{"V", 1e3}, {"mV", 1.0}}, response_mv);
+  const ResponseKind kind = given.options.response;
+  const double response_mv = given.response_record_mv > 0.0 ? given.response_record_mv : given.record_mv;
   const std::string in_si = response_key(kind);
-  const bool force = sensitivity(file, force_key, force_mv, 1.0, sensors.force_factor);
-  bool response = sensitivity(file, in_si, response_mv, 1.0, sensors.response_factor);
-  if (kind == ResponseKind::acceleration) {
-    if (file.has(response_in_g_key) && response) {
-      throw file.reject(response_in_g_key, fmt::format("must not stand beside {}", in_si),
-                        "They say the same in two units");
-    }
-    response =
-        sensitivity(file, response_in_g_key, response_mv, units::standard_gravity, sensors.response_factor) || response;
+  const std::optional<double> mv_per_si = kind == ResponseKind::acceleration ? given.response_mv_per_m_per_s2
+                                          : kind == ResponseKind::velocity   ? given.response_mv_per_m_per_s
+                                                                             : given.response_mv_per_m;
+  if (given.response_mv_per_g && mv_per_si) {
+    throw file.reject(response_in_g_key, fmt::format("must not stand beside {}", in_si),
+                      "They say the same in two units");
   }
+  const bool force =
+      take_sensitivity(file, force_key, given.force_mv_per_n, given.record_mv, 1.0, sensors.force_factor);
+  const bool response = take_sensitivity(file, in_si, mv_per_si, response_mv, 1.0, sensors.response_factor) ||
+                        take_sensitivity(file, response_in_g_key, given.response_mv_per_g, response_mv,
+                                         units::standard_gravity, sensors.response_factor);
   sensors.force_in_volts = force;
   sensors.response_in_volts = response;
   // Records in volts are neither N nor m/s^2.
@@ -109,44 +99,16 @@ void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors)
   }
 }
 
-Sensors read_sensors(io::TomlFile& file, ResponseKind kind) {
-  Sensors sensors;
-  read_sensitivities(file, kind, sensors);
-  sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
-  if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
-      !(sensors.sample_rate_hz > 0.0)) {
-    throw file.reject("acquisition.sample_rate_hz", "must be > 0");
-  }
-  return sensors;
-}
-
-struct Direction {
-  Dof dof;
-  bool against_axis = false;
-};
-
-/// "x", or "-x" against the axis.
-Direction direction(const io::TomlFile& file, const std::string& key, std::string_view text) {
-  const bool against = !text.empty() && text.front() == '-';
-  if (against) text.remove_prefix(1);
-  try {
-    return {.dof = parse_dof(text), .against_axis = against};
-  } catch (const InvalidInput&) {
-    throw file.reject(key, "must be a direction", "x, y or z; -x for a hit against the axis; 3x at point 3");
-  }
-}
-
-/// A column's name, or its number from 1 (as a number or as text).
-std::string column(io::TomlFile& file, const std::string& key) {
-  std::string name;
-  int number = 0;
-  if (file.is_number(key)) {
-    file.integer(key, key, number);
-    if (number < 1) throw file.reject(key, "must be a column's name or its number from 1");
-    return std::to_string(number);
-  }
-  file.text(key, name);
-  return name;
+HitOptions read_acquisition(io::TomlFile& file, Sensors& sensors) {
+  Acquisition given;
+  acquisition_table().read(file, "acquisition", given);
+  reject_other_kinds(file, given.options.response);
+  take_sensitivities(file, given, sensors);
+  sensors.has_scale = given.scale.has_value();
+  sensors.scale = given.scale.value_or(sensors.scale);
+  sensors.sample_rate_hz = given.sample_rate_hz;
+  file.locate([&] { given.options.validate(); });
+  return given.options;
 }
 
 double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz,
@@ -159,25 +121,6 @@ double rate_of(const io::TomlFile& file, const std::string& key, const io::Recor
   }
   if (rate_hz > 0.0) return rate_hz;
   throw file.reject(key, "has no time column, and acquisition.sample_rate_hz is missing");
-}
-
-HitRow read_row(io::TomlFile& file, const std::string& row) {
-  for (const char* key : {"force", "force_direction", "responses"}) file.require(row + key);
-  HitRow out;
-  std::string text;
-  file.text(row + "force_direction", text);
-  const Direction push = direction(file, row + "force_direction", text);
-  out.excitation = push.dof;
-  out.against_axis = push.against_axis;
-  out.force = column(file, row + "force");
-  const std::vector<std::string> responses = file.keys(row + "responses");
-  if (responses.empty()) throw file.reject(row + "responses", "must name a column for one direction at least");
-  for (const std::string& name : responses) {
-    const std::string key = row + "responses." + name;
-    const Direction sensed = direction(file, key, name);
-    out.responses.push_back({.dof = sensed.dof, .against_axis = sensed.against_axis, .column = column(file, key)});
-  }
-  return out;
 }
 
 /// What hits.toml takes a column for.
@@ -255,27 +198,22 @@ Hit read_hit(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sen
              std::vector<std::string>& notes) {
   const std::string row = fmt::format("hits[{}].", index);
   file.require(row + "file");
-  const HitRow columns = read_row(file, row);
-  if (file.has(row + "file[0]")) {
-    throw file.reject(row + "file", "must be one file",
-                      "Force and response in two files are not read yet: write them beside each other in one CSV");
-  }
-  std::filesystem::path path;
-  file.path(row + "file", path);
-  if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
+  HitTable given;
+  hit_table().read(file, fmt::format("hits[{}]", index), given);
+  const HitRow& columns = given.row;
+  if (io::format_of(given.file) == io::Format::wav && !sensors.has_scale) {
     throw file.reject(row + "file", "is a WAV, and acquisition.scale is missing",
                       "scale says what full scale means: volts where the sensors' mV per unit are given");
   }
-  io::RecordOptions reading{.scale = sensors.scale};
-  if (file.has(row + "time")) reading.time = column(file, row + "time");
-  io::Record record = file.locate([&] { return io::read_record(path, reading); });
+  const io::RecordOptions reading{.time = given.time, .scale = sensors.scale};
+  io::Record record = file.locate([&] { return io::read_record(given.file, reading); });
   if (!reading.time.empty() && has_own_units(record)) {
     record.sample_rate_hz /= guess_by_name(record, record.place(reading.time)).si_per_unit;  // of times in ms
   }
   notes.insert(notes.end(), record.notes.begin(), record.notes.end());
 
   Hit hit;
-  hit.file = path.string();
+  hit.file = given.file.string();
   hit.excitation = columns.excitation;
   hit.against_axis = columns.against_axis;
   hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz, notes);
@@ -342,9 +280,8 @@ const char* response_unit(ResponseKind kind) {
 HitsFile read_hits(const io::TomlSource& source) {
   io::TomlFile file(source);
   HitsFile out;
-  read_options(file, out.options);
-  const Sensors sensors = read_sensors(file, out.options.response);
-  file.locate([&] { out.options.validate(); });
+  Sensors sensors;
+  out.options = read_acquisition(file, sensors);
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i)
     out.hits.push_back(read_hit(file, i, out.options.response, sensors, out.notes));
@@ -357,17 +294,16 @@ HitsFile read_hits(const io::TomlSource& source) {
 HitRows read_hit_rows(const io::TomlSource& source) {
   io::TomlFile file(source);
   HitRows out;
-  read_options(file, out.options);
-  const Sensors sensors = read_sensors(file, out.options.response);
-  file.locate([&] { out.options.validate(); });
+  Sensors sensors;
+  out.options = read_acquisition(file, sensors);
   out.force_factor = sensors.force_factor;
   out.response_factor = sensors.response_factor;
   out.sample_rate_hz = sensors.sample_rate_hz;
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] with the columns and the direction");
   for (std::size_t i = 0; i < file.tables("hits"); ++i) {
-    const std::string row = fmt::format("hits[{}].", i);
-    for (const char* key : {"file", "time"}) file.skip(row + key);
-    out.rows.push_back(read_row(file, row));
+    HitTable given;
+    hit_table().read(file, fmt::format("hits[{}]", i), given);
+    out.rows.push_back(std::move(given.row));
   }
   out.notes = file.done();
   return out;

@@ -72,7 +72,7 @@ TEST(HitsToml, TakesSensitivitiesInGAndRecordsInMillivolts) {
             std::string::npos);
   EXPECT_NE(say("voltage_unit = \"kV\"\nforce_mv_per_n = 1\n").find("must be one of \"V\", \"mV\""), std::string::npos);
   EXPECT_NE(say("response = \"velocity\"\nforce_mv_per_n = 1\nresponse_mv_per_g = 100\n")
-                .find("response_mv_per_g: is not known here"),
+                .find("response_mv_per_g = 100 mV/g; is of another sensor than acquisition.response_mv_per_m_per_s"),
             std::string::npos);
 }
 
