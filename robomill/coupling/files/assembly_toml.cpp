@@ -9,7 +9,7 @@
 
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
+#include "robomill/coupling/files/assembly_schema.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/toml/file.hpp"
@@ -19,27 +19,24 @@
 namespace robomill::coupling {
 namespace {
 
-/// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
-Segment read_segment(io::TomlFile& file, const std::string& key, const std::string& member) {
-  Segment segment;
-  file.fields(key, segment_fields, segment, member);
-  file.integer(key + "flutes", member + "flutes", segment.flutes);
-  file.choice(key + "beam", beam_names, segment.beam);
-  try {
-    segment.validate();
-  } catch (const InvalidInput& error) {
-    throw file.located(within(member, error));
+/// @param member  of the list: "tool"
+void check_segments(const io::TomlFile& file, const char* member, const std::vector<Segment>& segments) {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    try {
+      segments[i].validate();
+    } catch (const InvalidInput& error) {
+      throw file.located(within(fmt::format("{}[{}].", member, i + 1), error));
+    }
   }
-  return segment;
 }
 
-std::vector<Segment> read_segments(io::TomlFile& file, const std::string& table) {
-  std::vector<Segment> out;
-  const std::size_t count = file.tables(table);
-  out.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    out.push_back(read_segment(file, fmt::format("{}[{}].", table, i), fmt::format("{}[{}].", table, i + 1)));
+/// [[tool]]
+std::vector<Segment> read_tool(io::TomlFile& file) {
+  std::vector<Segment> out(file.tables("tool"));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    segment_table().read(file, fmt::format("tool[{}]", i), out[i], fmt::format("tool[{}].", i + 1));
   }
+  check_segments(file, "tool", out);
   return out;
 }
 
@@ -50,9 +47,7 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::o
     return;
   }
   Joint joint;
-  constexpr const char* cross = "joint.cross_stiffness_n_per_rad";
-  file.number(cross, cross, 1.0, joint.cross_stiffness_n_per_rad);
-  file.fields("joint.", joint_fields, joint, "joint.");
+  joint_options_table().read(file, "joint", joint, "joint.");
   if (reading.joint_sought) {
     // The search uses none of the four; what stands for them must only be valid.
     joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
@@ -61,13 +56,11 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::o
   } else if (found) {
     for (const io::Field<Joint>& field : joint_fields) joint.*field.value = found->joint.*field.value;
   }
-  file.number("joint.insertion_length_mm", "joint.insertion_length_m", units::mm, joint.insertion_length_m);
-  file.integer("joint.points", "joint.points", joint.points);
   if (found && joint.points > 1) {
     throw file.reject("joint.points", "must be 1 where the joint is that of " + reading.joint.filename().string(),
                       "A joint that was found stands at the mouth of the holder");
   }
-  joint.shank = read_segments(file, "joint.shank");
+  check_segments(file, "joint.shank", joint.shank);
   try {
     joint.validate();
   } catch (const InvalidInput& error) {
@@ -76,40 +69,16 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::o
   out = joint;
 }
 
-/// How a joint is searched for; the keys of the ranges are those of [joint].
-void read_search(io::TomlFile& file, JointFitOptions& out) {
-  for (std::size_t i = 0; i < joint_unknowns; ++i) {
-    const char* const name = joint_fields[i].key;
-    const std::string key = fmt::format("search.{}", name);
-    std::vector<double> range;
-    if (!file.numbers(key, name, 1.0, range)) continue;
-    const bool stiffness = i % 2 == 0;
-    if (range.size() != 2 || !(range[0] <= range[1]) || !(stiffness ? range[0] > 0.0 : range[0] >= 0.0)) {
-      throw file.reject(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));
-    }
-    // (0, 0) stands for a range that is left open.
-    if (range[1] == 0.0) throw file.reject(key, "must not end at 0", "For no damping write a small upper bound: 1e-9");
-    out.lower[i] = range[0];
-    out.upper[i] = range[1];
+FrequencyTable read_frequency(io::TomlFile& file, AssemblyFile& out) {
+  FrequencyTable given;
+  if (!file.has("frequency")) return given;
+  frequency_table().read(file, "frequency", given);
+  out.low_hz = given.range_hz[0];
+  out.high_hz = given.range_hz[1];
+  if (!(out.high_hz > out.low_hz)) {
+    throw file.reject("frequency.range_hz", "must be [from, to] with from below to");
   }
-  file.integer("search.population", "population", out.population);
-  file.integer("search.generations", "generations", out.generations);
-  file.number("search.crossover", "crossover", 1.0, out.crossover);
-  file.number("search.mutation_rate", "mutation_rate", 1.0, out.mutation_rate);
-  file.choice("search.mutation", mutation_names, out.mutation);
-  file.locate([&] { out.validate(); });
-}
-
-void read_range(io::TomlFile& file, AssemblyFile& out) {
-  if (!file.has("frequency")) return;
-  std::vector<double> range;
-  file.require("frequency.range_hz", "[from, to]");
-  file.numbers("frequency.range_hz", "range_hz", 1.0, range);
-  if (range.size() != 2) throw file.reject("frequency.range_hz", "must be [from, to]");
-  if (!(range[0] >= 0.0)) throw file.reject("frequency.range_hz", "must begin at 0 Hz or above");
-  if (!(range[1] > range[0])) throw file.reject("frequency.range_hz", "must be [from, to] with from below to");
-  out.low_hz = range[0];
-  out.high_hz = range[1];
+  return given;
 }
 
 /// Of the receptances of tool, holder and assembly, and of the FRFs as numbers of a document.
@@ -124,11 +93,9 @@ void require_affordable_lines(double lines, double step_hz, double high_hz) {
 }
 
 /// Evenly from low to high, without 0 Hz; empty where no step is given.
-Eigen::VectorXd read_step(io::TomlFile& file, const AssemblyFile& out) {
-  double step_hz = 0.0;
-  if (!file.number("frequency.step_hz", "step_hz", 1.0, step_hz)) return {};
-  if (!(step_hz > 0.0)) throw file.reject("frequency.step_hz", "must be > 0");
-  if (!file.has("frequency.range_hz")) file.require("frequency.range_hz", "[from, to]");
+Eigen::VectorXd lines_of(const io::TomlFile& file, const FrequencyTable& given, const AssemblyFile& out) {
+  if (!given.step_hz) return {};
+  const double step_hz = *given.step_hz;
   // A step such as 0.1 must not lose the last line to rounding.
   const double steps = std::floor((out.high_hz - out.low_hz) / step_hz * (1.0 + 1e-12) + 1e-9);
   file.locate([&] { require_affordable_lines(steps, step_hz, out.high_hz); });
@@ -195,19 +162,14 @@ void number_one_point(modal::FrfFile& measured) {
   std::erase_if(measured.assumed, [](const Assumption& one) { return one.taken == modal::taken_as_tip; });
 }
 
-void read_measured(io::TomlFile& file, AssemblyFile& out) {
-  std::vector<double> position_m;
-  HolderOptions options;
-  const bool points = file.numbers("holder.points_mm", "position_m", units::mm, position_m);
-  file.number("holder.regularisation", "regularisation", 1.0, options.regularisation);
-  file.number("holder.max_amplification", "max_amplification", 1.0, options.max_amplification);
-  const std::vector<Segment> artefact = read_segments(file, "holder.artefact");
+void read_measured(const io::TomlFile& file, const HolderTable& given, AssemblyFile& out) {
+  const bool points = file.has("holder.points_mm");
   if (!points) {
     for (const char* key : {"holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
       if (file.has(key)) file.require("holder.points_mm", fmt::format("{} needs to know where was measured", key));
     }
   }
-  if (file.has("holder.artefact") && artefact.empty()) {
+  if (file.has("holder.artefact") && given.artefact.empty()) {
     throw file.reject("holder.artefact", "must have at least one segment");
   }
   modal::FrfFile measured = modal::read_frfs({out.receptances});
@@ -215,7 +177,7 @@ void read_measured(io::TomlFile& file, AssemblyFile& out) {
     throw InvalidInput(out.receptances.string(), "still holds the damping of an exponential window",
                        "Estimate the FRFs with remove_added_damping");
   }
-  if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
+  if (points && given.position_m.size() == 1 && !given.artefact.empty()) number_one_point(measured);
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
   add_assumed(out.assumed, measured.assumed);
   Holder& holder = out.assembly.holder;
@@ -225,20 +187,24 @@ void read_measured(io::TomlFile& file, AssemblyFile& out) {
     return;
   }
   out.holder = about(file, out.receptances, [&] {
-    return artefact.empty() ? complete_rotations(measured.set, position_m, options)
-                            : remove_artefact(measured.set, position_m, artefact, options);
+    return given.artefact.empty() ? complete_rotations(measured.set, given.position_m, given.options)
+                                  : remove_artefact(measured.set, given.position_m, given.artefact, given.options);
   });
   holder.receptances = out.holder->receptances;
 }
 
 void read_holder(io::TomlFile& file, AssemblyFile& out) {
   if (!file.has("holder")) return;
-  const bool measured = file.path("holder.receptances", out.receptances);
-  if (measured && file.has("holder.segments")) {
-    throw file.reject("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
-  }
-  if (measured) {
-    read_measured(file, out);
+  HolderTable given;
+  holder_table().read(file, "holder", given);
+  check_segments(file, "holder.segments", given.segments);
+  check_segments(file, "holder.artefact", given.artefact);
+  out.receptances = given.receptances;
+  if (!given.receptances.empty()) {
+    if (file.has("holder.segments")) {
+      throw file.reject("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
+    }
+    read_measured(file, given, out);
     return;
   }
   for (const char* key : {"holder.points_mm", "holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
@@ -247,7 +213,7 @@ void read_holder(io::TomlFile& file, AssemblyFile& out) {
   if (!file.has("holder.segments")) {
     throw file.reject("holder", "must give segments or receptances", "For a rigid wall leave [holder] out");
   }
-  out.assembly.holder.segments = read_segments(file, "holder.segments");
+  out.assembly.holder.segments = std::move(given.segments);
   if (out.assembly.holder.segments.empty()) out.notes.emplace_back("No segments: the tool stands on a rigid wall");
 }
 
@@ -320,10 +286,10 @@ void choose_lines(const io::TomlFile& file, const Eigen::VectorXd& own, Assembly
 AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& reading) {
   io::TomlFile file(source);
   AssemblyFile out{.path = source.path};
-  read_range(file, out);
-  const Eigen::VectorXd lines = read_step(file, out);
+  const FrequencyTable frequency = read_frequency(file, out);
+  const Eigen::VectorXd lines = lines_of(file, frequency, out);
   file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
-  out.assembly.tool = read_segments(file, "tool");
+  out.assembly.tool = read_tool(file);
   if (out.assembly.tool.empty()) throw file.reject("tool", "must have at least one segment");
   std::optional<JointFile> found;
   if (!reading.joint.empty()) {
@@ -333,7 +299,8 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   }
   read_joint(file, reading, found, out.assembly.joint);
   read_holder(file, out);
-  read_search(file, out.search);
+  search_table().read(file, "search", out.search);
+  file.locate([&] { out.search.validate(); });
   add_defaults(file, reading, out);
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   add_assumed(out.assumed, io::sample_values(file));

@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/coupling/files/assembly_schema.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/key_unit.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
@@ -50,16 +49,17 @@ class TableRow {
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
     InvalidInput::Parts parts = error.parts();
     parts.where = fmt::format("{}:{}", table_.where, row_.line);
-    for (const io::Field<Segment>& column : segment_fields) {
+    for (const SegmentNumber& number : segment_numbers()) {
+      const io::Row<Segment>& column = number.row;
       if (parts.field != column.member) continue;
-      parts.field = column.key;
-      if (text(column.key).empty()) {
+      parts.field = column.key.name;
+      if (text(column.key.name).empty()) {
         parts.rule = "is missing; " + parts.rule;
         parts.number.reset();
         parts.unit.clear();
       } else if (parts.number) {
         parts.number = io::round_15(*parts.number / column.factor);
-        parts.unit = io::unit_of_key(column.key);
+        parts.unit = column.key.unit();
       }
     }
     return InvalidInput(std::move(parts));
@@ -72,7 +72,7 @@ class TableRow {
 
 void check_columns(const io::TextTable& table) {
   std::vector<std::string> known(other_columns.begin(), other_columns.end());
-  for (const io::Field<Segment>& column : segment_fields) known.emplace_back(column.key);
+  for (const SegmentNumber& column : segment_numbers()) known.push_back(column.row.key.name);
   table.require_known(known);
   for (const char* needed : {"tool", "length_mm", "diameter_mm"}) {
     if (!table.column(needed)) throw InvalidInput(table.where, fmt::format("has no column {}", needed));
@@ -83,7 +83,9 @@ Segment read_segment(const TableRow& row, const Segment& like) {
   Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
-  for (const io::Field<Segment>& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
+  for (const SegmentNumber& column : segment_numbers()) {
+    row.number(column.row.key.name, column.row.factor, segment.*column.value);
+  }
   row.integer("flutes", segment.flutes);
   if (const std::string_view beam = row.text("beam"); !beam.empty()) {
     const std::optional<Beam> known = value_in(beam_names, beam);
