@@ -149,7 +149,7 @@ TEST(MaterialsToml, RejectsInTheFilesWords) {
   expect(good +
              "[[materials.foam.coefficients]]\ncutter = \"any\"\nspecific_force_n_per_mm2 = 5\n"
              "thickness_power = 1\nsource = \"Someone\"\n",
-         "thickness_power from 0 to below 1");
+         "thickness_power = 1; must be below 1");
 }
 
 }  // namespace materials_toml_test
