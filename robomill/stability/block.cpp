@@ -23,7 +23,6 @@ namespace robomill::stability {
 namespace {
 
 using namespace detail;
-constexpr std::size_t depths_at_a_time = 6;  // some of them may not be needed; each has a mesh of its own
 constexpr double none = std::numeric_limits<double>::infinity();
 
 class BlockSearch {
@@ -36,6 +35,7 @@ class BlockSearch {
         evaluator_(*model_, options.tolerance,
                    {.tolerance = 1e-3 * options.tolerance, .between = 8, .most_cold_modes = 40}) {
     crossing_.tolerance = options.tolerance;
+    crossing_.at_a_time = lane_count;
     crossing_.level = model_->first_level(point, options.tolerance);
     crossing_.coarse_level = std::max(1, crossing_.level - 1);
   }
@@ -61,7 +61,6 @@ class BlockSearch {
       }
       evaluator_.evaluate(std::span(points).first(gains.size()), ask, outcomes);
     };
-    crossing_.at_a_time = lane_count;
     crossing_.cheap_lanes = true;
     crossing_.estimate = false;
     const Crossing crossing =
@@ -87,7 +86,6 @@ class BlockSearch {
       range = {point_.axial_depth_m / 16.0, deepest_m};
     }
     const bool guessed = out.gain.status == GainMargin::Status::found;
-    crossing_.at_a_time = depths_at_a_time;
     crossing_.cheap_lanes = false;
     crossing_.estimate = true;
     const double guess = guessed ? out.gain.gain * point_.axial_depth_m : 0.0;

@@ -260,12 +260,11 @@ double WayModel::margin_at(std::size_t look_class, const modal::ModalModel& mode
       stability::block_stability(block_problem(at, modes), speed, depth_m,
                                  {.tolerance = at.tolerance,
                                   .axial_depth_m = {shallowest * depth_m, deepest * depth_m},
-                                  .point = stable != nullptr,
+                                  .point = false,
                                   .margin = false,
                                   .regime = false});
-  if (stable != nullptr) *stable = found.at.stable;
-  const bool limited = found.limit.status == stability::Limit::Status::found;
-  return 1.0 - depth_m / (limited ? std::min(found.limit_5_percent_m, deepest * depth_m) : deepest * depth_m);
+  if (stable != nullptr) *stable = !found.limited() || found.limit.axial_depth_m > depth_m;
+  return 1.0 - depth_m / std::min(found.limit_5_percent_m, deepest * depth_m);
 }
 
 double WayModel::deepest() const {

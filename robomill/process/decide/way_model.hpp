@@ -105,7 +105,7 @@ class WayModel {
   void sort_into_classes();
   [[nodiscard]] const Stand& stand(std::size_t look_class, double gamma_rad) const;
   /// 1 - depth / limit, of the 5 % quantile, and of the depth searched where there is no limit.
-  /// @param stable  set to whether the cut is, where it is asked for
+  /// @param stable  set to whether the cut is below its lowest limit, where it is asked for
   [[nodiscard]] double margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
                                  bool* stable) const;
   [[nodiscard]] ClassLook compute(std::size_t look_class, double speed, double gamma_rad) const;

@@ -1,11 +1,11 @@
 #include "robomill/stability/eigen/arnoldi.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/stability/eigen/kernels.hpp"
 
@@ -234,8 +234,9 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   tolerance_ = tolerance;
   size_ = map.size();
   most_ = std::min(size_, map.modal_size() + options_.extra);
-  basis_.resize((most_ + 1) * size_);
-  hessenberg_.resize((most_ + 1) * most_);
+  basis_.reserve((most_ + 1) * size_);
+  hessenberg_.reserve((most_ + 1) * most_);
+  make_room(1);
   std::ranges::fill(out, Dominant{});
   for (auto& vector : full_) vector.resize(0);
   for (auto& vector : ritz_) vector.clear();
@@ -258,14 +259,21 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   if (is_left()) full_matrix(map, out);
 }
 
+/// What was reserved is not touched before a column needs it: few of the most are.
+void Arnoldi::make_room(std::size_t columns) {
+  basis_.resize(std::max(basis_.size(), (columns + 1) * size_));
+  hessenberg_.resize(std::max(hessenberg_.size(), columns * (most_ + 1)));
+}
+
 /// Columns up to `most`, looked at from the first look on, after half as many again up to those of a cold start.
 void Arnoldi::extend(PeriodMap& map, std::size_t first, std::size_t most, std::span<bool> done,
                      std::span<Dominant> out) {
   OrthogonalArguments arguments;
   arguments.size = size_;
-  arguments.basis = basis_.data();
   std::size_t next_look = first;
   for (std::size_t k = 0; k < most && std::ranges::find(done, false) != done.end(); ++k) {
+    make_room(k + 1);
+    arguments.basis = basis_.data();
     Lanes* const next = basis_.data() + (k + 1) * size_;
     map.apply(basis_.data() + k * size_, next);
     for (int period = 1; period < periods_; ++period) {
@@ -304,12 +312,12 @@ void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {
   for (std::size_t lane = 0; lane < out.size(); ++lane) {
     if (out[lane].by == Dominant::By::arnoldi) continue;
     if (!matrix[lane].allFinite()) continue;
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix[lane], true);
-    if (solver.info() != Eigen::Success) continue;
+    const linear_algebra::EigenPairs pairs = linear_algebra::eigen_pairs(matrix[lane]);
+    if (!pairs.converged) continue;
     Eigen::Index best = 0;
-    solver.eigenvalues().cwiseAbs().maxCoeff(&best);
-    const std::complex<double> value = solver.eigenvalues()(best);
-    const Eigen::VectorXcd vector = solver.eigenvectors().col(best);
+    pairs.values.cwiseAbs().maxCoeff(&best);
+    const std::complex<double> value = pairs.values(best);
+    const Eigen::VectorXcd vector = pairs.vectors.col(best);
     full_[lane] = value.imag() < 0.0 ? vector.conjugate().eval() : vector;
     full_[lane].normalize();
     out[lane].multiplier = upper_half(value);

@@ -53,6 +53,7 @@ class Arnoldi {
   [[nodiscard]] bool pays_to_warm_up(const PeriodMap& map, bool guessed) const;
   [[nodiscard]] static std::size_t passes(const PeriodMap& map, bool guessed);
   void warm_up(PeriodMap& map, std::size_t passes);
+  void make_room(std::size_t columns);
   void start_again(std::span<const bool> done, std::span<const Dominant> out);
   void extend(PeriodMap& map, std::size_t first, std::size_t most, std::span<bool> done, std::span<Dominant> out);
   [[nodiscard]] int periods(const PeriodMap& map, std::size_t round) const;

@@ -6,6 +6,7 @@
 #include <complex>
 #include <mutex>
 
+#include "robomill/stability/eigen/kernel_parts.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
@@ -13,12 +14,16 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr std::size_t most_groups = most_nodes / lane_count;  // of eight nodes
+constexpr std::size_t most_ends = most_nodes + 1;
+
 /// Lagrange values that depend on the numbers of nodes and quadrature points alone. The last end is that of the piece.
 struct Table {
   const GaussRule* nodes = nullptr;
   const GaussRule* quadrature = nullptr;
-  std::vector<double> end;    ///< [i]: node i, then 1
-  std::vector<double> value;  ///< [(i * points + q) * p + l]: ℓ_l at end_i * quadrature node q
+  std::size_t groups = 1;    ///< of eight nodes
+  std::vector<double> end;   ///< [i]: node i, then 1
+  std::vector<Lanes> value;  ///< [(i * points + q) * groups + l / 8]: ℓ_l at end_i * quadrature node q, in lane l % 8
 };
 
 Table make_table(int p, int points) {
@@ -27,10 +32,13 @@ Table make_table(int p, int points) {
   table.quadrature = &gauss_rule(points);
   table.end = table.nodes->node;
   table.end.push_back(1.0);
+  const std::size_t nodes = table.nodes->node.size();
+  table.groups = (nodes + lane_count - 1) / lane_count;
   for (const double end : table.end) {
     for (const double x : table.quadrature->node) {
-      for (std::size_t l = 0; l < table.nodes->node.size(); ++l) {
-        table.value.push_back(lagrange(table.nodes->node, l, end * x));
+      Lanes* const values = &*table.value.insert(table.value.end(), table.groups, Lanes{});
+      for (std::size_t l = 0; l < nodes; ++l) {
+        values[l / lane_count].v[l % lane_count] = lagrange(table.nodes->node, l, end * x);
       }
     }
   }
@@ -54,23 +62,62 @@ const Table& table(int p, double radians) {
   return slot.table;
 }
 
+using Decays = std::array<Complex, most_gauss_points>;
+
+/// e^z; std::exp looks for what is not finite besides.
+Complex exponential(Complex z) {
+  return std::polar(std::exp(z.real()), z.imag());
+}
+
 /// e^(pole t) at the quadrature points of one end: points that lie as far on either side of the middle share what
 /// they turn and fade by.
 void decays(Complex pole, const std::array<double, most_gauss_points>& before_s, std::size_t points, bool mirrored,
-            std::array<Complex, most_gauss_points>& out) {
+            Decays& out) {
   if (!mirrored) {
-    for (std::size_t q = 0; q < points; ++q) out[q] = std::exp(pole * before_s[q]);
+    for (std::size_t q = 0; q < points; ++q) out[q] = exponential(pole * before_s[q]);
     return;
   }
   const double middle_s = 0.5 * (before_s[0] + before_s[points - 1]);
-  const Complex middle = std::exp(pole * middle_s);
+  const Complex middle = exponential(pole * middle_s);
   for (std::size_t q = 0; q < points / 2; ++q) {
-    const Complex away = std::exp(pole * (before_s[q] - middle_s));
+    const Complex away = exponential(pole * (before_s[q] - middle_s));
     out[q] = middle * away;
     out[points - 1 - q] = middle * (std::conj(away) / std::norm(away));
   }
   if (points % 2 == 1) out[points / 2] = middle;
 }
+
+/// What one mode does at the ends, eight nodes at a time.
+struct ModeArguments {
+  std::size_t ends = 0, points = 0, groups = 0, entries = 0;
+  const Lanes* value = nullptr;                                        ///< of the table
+  const std::array<Decays, most_ends>* decay = nullptr;                ///< times the weights of quadrature
+  const double *residue_real = nullptr, *residue_imaginary = nullptr;  ///< length entries: D D
+  Lanes *real = nullptr, *imaginary = nullptr;  ///< [end * groups + group]: ∫ exp(pole (end - s)) ℓ_l(s) ds
+  Lanes* response = nullptr;                    ///< [(node * entries + entry) * groups + group], which it adds to
+};
+
+CORE void add_mode_core(ModeArguments& a, std::size_t lane) {
+  for (std::size_t end = 0; end < a.ends; ++end) {
+    const Decays& decay = (*a.decay)[end];
+    for (std::size_t group = 0; group < a.groups; ++group) {
+      const Lanes* value = a.value + end * a.points * a.groups + group;
+      V real = {}, imaginary = {};
+      for (std::size_t q = 0; q < a.points; ++q, value += a.groups) {
+        real += decay[q].real() * L(*value);
+        imaginary += decay[q].imag() * L(*value);
+      }
+      L(a.real[end * a.groups + group]) = real;
+      L(a.imaginary[end * a.groups + group]) = imaginary;
+      if (end + 1 == a.ends) continue;
+      for (std::size_t e = 0; e < a.entries; ++e) {
+        L(a.response[(end * a.entries + e) * a.groups + group]) +=
+            2.0 * (real * a.residue_real[e] - imaginary * a.residue_imaginary[e]);
+      }
+    }
+  }
+}
+ROBOMILL_KERNEL(add_mode, ModeArguments)
 
 }  // namespace
 
@@ -84,9 +131,8 @@ void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double fr
   const std::size_t points = t.quadrature->node.size();
   const Eigen::Index n = tip.pole.size();
   const double start = rotation.time_s(from_rad);
-  std::array<double, most_nodes + 1> end_s = {};
-  std::array<std::array<double, most_gauss_points>, most_nodes + 1> before_s = {},
-                                                                    weight_s = {};  // of quadrature, to each end
+  std::array<double, most_ends> end_s = {};
+  std::array<std::array<double, most_gauss_points>, most_ends> before_s, weight_s;  // of quadrature, to each end
   for (std::size_t i = 0; i <= p; ++i) {
     end_s[i] = rotation.time_s(from_rad + t.end[i] * length_rad) - start;
     for (std::size_t q = 0; q < points; ++q) {
@@ -104,53 +150,65 @@ void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double fr
   }
   out.factor.resize(n);
   out.at_nodes.resize(D * nodes, 2 * n);
-  out.response.setZero(D * nodes, D * nodes);
+  out.response.resize(D * nodes, D * nodes);
   out.influence.resize(2 * n, D * nodes);
   out.velocity_at_nodes.resize(velocities ? D * nodes : 0, 2 * n);
   out.velocity_response.setZero(velocities ? D * nodes : 0, D * nodes);
-  std::array<Complex, most_gauss_points> decay;
+  std::array<Decays, most_ends> decay;
+  std::array<Lanes, most_ends * most_groups> real, imaginary;
+  std::array<Lanes, most_nodes * D * D * most_groups> response;
+  std::fill_n(response.begin(), p * D * D * t.groups, Lanes{});
+  ModeArguments arguments = {.ends = p + 1, .points = points, .groups = t.groups, .entries = D * D};
+  arguments.value = t.value.data();
+  arguments.decay = &decay;
+  arguments.real = real.data();
+  arguments.imaginary = imaginary.data();
+  arguments.response = response.data();
   for (Eigen::Index k = 0; k < n; ++k) {
     const Complex pole = tip.pole(k);
     const Vector right = tip.right.col(k);
     const Vector left = tip.left.col(k);
     const Eigen::Matrix<Complex, D, D> residue = right * left.transpose();
+    const Eigen::Matrix<double, D, D> residue_real = residue.real(), residue_imaginary = residue.imag();
     for (std::size_t i = 0; i <= p; ++i) {
+      decays(pole, before_s[i], points, rotation.even(), decay[i]);
+      for (std::size_t q = 0; q < points; ++q) decay[i][q] *= weight_s[i][q];
+    }
+    arguments.residue_real = residue_real.data();
+    arguments.residue_imaginary = residue_imaginary.data();
+    add_mode(arguments);
+    const auto integral = [&](std::size_t i, std::size_t l) {
+      const std::size_t at = i * t.groups + l / lane_count;
+      return Complex(real[at].v[l % lane_count], imaginary[at].v[l % lane_count]);
+    };
+    out.factor(k) = exponential(pole * end_s[p]);
+    for (std::size_t l = 0; l < p; ++l) {
+      const Eigen::Index column = D * static_cast<Eigen::Index>(l);
+      const Eigen::Matrix<Complex, 1, D> driven = integral(p, l) * left.transpose();
+      out.influence.template block<1, D>(2 * k, column) = driven.real();
+      out.influence.template block<1, D>(2 * k + 1, column) = driven.imag();
+    }
+    for (std::size_t i = 0; i < p; ++i) {
       const Eigen::Index row = D * static_cast<Eigen::Index>(i);
-      const Complex decay_to_end = std::exp(pole * end_s[i]);
-      std::array<double, most_nodes> real = {}, imaginary = {};  // ∫ exp(pole (end - s)) ℓ_l(s) ds
-      decays(pole, before_s[i], points, rotation.even(), decay);
-      for (std::size_t q = 0; q < points; ++q) {
-        const double re = decay[q].real() * weight_s[i][q];
-        const double im = decay[q].imag() * weight_s[i][q];
-        const double* value = t.value.data() + (i * points + q) * p;
-        for (std::size_t l = 0; l < p; ++l) {
-          real[l] += re * value[l];
-          imaginary[l] += im * value[l];
-        }
-      }
-      if (i == p) {
-        out.factor(k) = decay_to_end;
-        for (std::size_t l = 0; l < p; ++l) {
-          const Complex w(real[l], imaginary[l]);
-          const Eigen::Index column = D * static_cast<Eigen::Index>(l);
-          out.influence.template block<1, D>(2 * k, column) = (w * left.transpose()).real();
-          out.influence.template block<1, D>(2 * k + 1, column) = (w * left.transpose()).imag();
-        }
-        continue;
-      }
-      out.at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * (right * decay_to_end).real();
-      out.at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * (right * decay_to_end).imag();
-      for (std::size_t l = 0; l < p; ++l) {
-        out.response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) +=
-            2.0 * (real[l] * residue.real() - imaginary[l] * residue.imag());
-      }
+      const Complex decay_to_end = exponential(pole * end_s[i]);
+      const Vector moved = right * decay_to_end;
+      out.at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moved.real();
+      out.at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moved.imag();
       if (!velocities) continue;
-      const Complex slope = pole * decay_to_end;
-      out.velocity_at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * (right * slope).real();
-      out.velocity_at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * (right * slope).imag();
+      const Vector moving = right * (pole * decay_to_end);
+      out.velocity_at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moving.real();
+      out.velocity_at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moving.imag();
       for (std::size_t l = 0; l < p; ++l) {
-        const Complex w = pole * Complex(real[l], imaginary[l]) + (l == i ? 1.0 : 0.0);
+        const Complex w = pole * integral(i, l) + (l == i ? 1.0 : 0.0);
         out.velocity_response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) += 2.0 * (residue * w).real();
+      }
+    }
+  }
+  for (std::size_t i = 0; i < p; ++i) {
+    for (std::size_t l = 0; l < p; ++l) {
+      for (std::size_t e = 0; e < D * D; ++e) {
+        out.response(static_cast<Eigen::Index>(D * i + e % D), static_cast<Eigen::Index>(D * l + e / D)) =
+            response[(i * D * D + e) * t.groups + l / lane_count].v[l % lane_count];
       }
     }
   }
