@@ -82,12 +82,23 @@ Json placement(const std::string& text) {
       {"no_way", nullptr}};
 }
 
+Json start_posture() {
+  Json joints = Json::array();
+  for (const double position : {10.0, -60.0, 80.0, 0.0, 70.0, 20.0})
+    joints.push_back({{"unit", "deg"}, {"position", position}});
+  return {{"joints", std::move(joints)}, {"shoulder_as_at_home", true}, {"elbow_as_at_home", true},
+          {"wrist_as_at_home", nullptr}, {"whole_turns_from_home", 0},  {"margin", 0.021},
+          {"margin_block", 3},           {"margin_joint", 5},           {"near_singularity", nullptr}};
+}
+
 Json proposal(double x_mm, double y_mm, double turn_deg) {
   return {{"origin_mm", {x_mm, y_mm, 700.0}},
           {"rotation_deg", {0.0, 0.0, turn_deg}},
           {"shift_mm", {x_mm - 3400.0, y_mm, 0.0}},
           {"turn_deg", turn_deg},
           {"margin", 0.021},
+          {"posture", start_posture()},
+          {"margin_joint", 5},
           {"gamma_deg", {30.0, 30.0}}};
 }
 
@@ -129,7 +140,8 @@ Json drawing() {
 std::string sample_cell(const std::string& text) {
   const auto said = [&](const char* own) { return text.empty() ? std::string(own) : text; };
   const Json to_limit = {185, 60, 47, 350, 63, 350};
-  const Json cell = {{"cell", said("cell.toml")},
+  const Json cell = {{"document", "check/1"},
+                     {"cell", said("cell.toml")},
                      {"robot",
                       {{"kind", "serial"},
                        {"model", said("kuka-kr210-r2700")},

@@ -172,7 +172,10 @@ std::string sample_comparison(const std::string& text) {
 }
 
 std::string sample_explanation() {
-  Json json = {{"spindle_speed_rpm", speed_rpm}, {"speed_from_peaks", true}, {"peaks", Json::array()}};
+  Json json = {{"document", "explain/1"},
+               {"spindle_speed_rpm", speed_rpm},
+               {"speed_from_peaks", true},
+               {"peaks", Json::array()}};
   Json& peaks = json["peaks"];
   const auto at_rotation = [&peaks](int rotations) {
     const double at_hz = rotations * rotation_hz + 0.02;
@@ -207,24 +210,30 @@ std::string sample_simulation() {
                      {"greatest_location_error_um", 15.1},
                      {"ra_um", 2.3},
                      {"rz_um", 9.6}};
-  const Json json = {{"spindle_speed_rpm", speed_rpm},
-                     {"axial_depth_mm", 1.2},
-                     {"verdict", "chatter"},
-                     {"chatter_frequency_hz", chatter_hz},
-                     {"chatter_amplitude_um", 23.1},
-                     {"period_s", 1.0 / rotation_hz},
-                     {"small_vibration", {{"spectral_radius", 1.183}, {"error_estimate", 1e-4}, {"period_s", 0.0022}}},
-                     {"missed_share", 0.31},
-                     {"walls", Json::array({wall})},
-                     {"vibrating_peak_n", {211.0, 168.0, 41.0}},
-                     {"vibrating_peak_force_n", 259.0},
-                     {"mean_force_n", {31.0, -12.0, 6.0}},
-                     {"samples", 40000},
-                     {"sample_rate_hz", 100000.0},
-                     {"steps_per_revolution", 652},
-                     {"error_estimate", 2e-4},
-                     {"resolved", true},
-                     {"diverged", false}};
+  const Json json = {
+      {"document", "simulation/1"},
+      {"spindle_speed_rpm", speed_rpm},
+      {"axial_depth_mm", 1.2},
+      {"verdict", "chatter"},
+      {"chatter_frequency_hz", chatter_hz},
+      {"chatter_amplitude_um", 23.1},
+      {"growth_per_period", 1.0},
+      {"period_s", 1.0 / rotation_hz},
+      {"small_vibration",
+       {{"spectral_radius", 1.183}, {"error_estimate", 1e-4}, {"multiplier", {0.9, 0.768}}, {"period_s", 0.0022}}},
+      {"missed_share", 0.31},
+      {"walls", Json::array({wall})},
+      {"vibrating_peak_n", {211.0, 168.0, 41.0}},
+      {"vibrating_peak_force_n", 259.0},
+      {"mean_force_n", {31.0, -12.0, 6.0}},
+      {"samples", 40000},
+      {"sample_rate_hz", 100000.0},
+      {"steps_per_revolution", 652},
+      {"slices", 12},
+      {"error_estimate", 2e-4},
+      {"resolved", true},
+      {"diverged", false},
+      {"seconds", 1.4}};
   return json.dump();
 }
 

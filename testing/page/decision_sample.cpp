@@ -53,16 +53,21 @@ Json worst(const Json& blocks, const char* column, const std::string& limit, dou
 Json as_programmed(const Json& blocks, const std::string& text) {
   const auto unstable = std::ranges::count_if(known(blocks, "spectral_radius"), [](double at) { return at >= 1.0; });
   return {{"cutting_time_s", 52.4},
+          {"robot_time_s", nullptr},
           {"total_time_s", 61.9},
           {"lowest_spindle_speed_rpm", programmed_speed_rpm},
           {"highest_spindle_speed_rpm", programmed_speed_rpm},
           {"unstable_blocks", unstable},
+          {"uncertain_blocks", 0},
           {"least_stability_margin", std::ranges::min(known(blocks, "stability_margin"))},
           {"peak_force_n", highest(blocks, "peak_f_n")},
           {"revolution_torque_n_m", highest(blocks, "torque_n_m")},
           {"sustained_power_w", highest(blocks, "power_w")},
           {"peak_deflection_um", highest(blocks, "deflection_um")},
           {"worst_surface_error_um", highest(blocks, "surface_error_um")},
+          {"peak_vibration_um", nullptr},
+          {"greatest_torque_share", nullptr},
+          {"reversals", 0},
           {"violations",
            Json::array({worst(blocks, "spectral_radius", text.empty() ? "stability" : text, 1.0, ""),
                         worst(blocks, "surface_error_um", "surface_error", allowed_surface_error_um, "µm")})}};
@@ -70,16 +75,21 @@ Json as_programmed(const Json& blocks, const std::string& text) {
 
 Json as_decided() {
   return {{"cutting_time_s", 43.1},
+          {"robot_time_s", nullptr},
           {"total_time_s", 52.6},
           {"lowest_spindle_speed_rpm", 14200},
           {"highest_spindle_speed_rpm", 15600},
           {"unstable_blocks", 0},
+          {"uncertain_blocks", 0},
           {"least_stability_margin", 0.112},
           {"peak_force_n", 84.0},
           {"revolution_torque_n_m", 0.176},
           {"sustained_power_w", 288.0},
           {"peak_deflection_um", nullptr},
           {"worst_surface_error_um", 33.6},
+          {"peak_vibration_um", nullptr},
+          {"greatest_torque_share", nullptr},
+          {"reversals", 0},
           {"violations", Json::array()}};
 }
 
@@ -109,6 +119,8 @@ Json stretches_json(const std::function<std::string(const char*)>& said) {
             {"first_line", first + 13},
             {"last_line", last + 13},
             {"spindle_speed_rpm", rpm},
+            {"lead_deg", 0.0},
+            {"tilt_deg", 0.0},
             {"lowest_feed_mm_per_min", low},
             {"highest_feed_mm_per_min", high},
             {"cutting_time_s", time_s},
@@ -170,6 +182,7 @@ std::string sample_decision(const std::string& text) {
       {"stretches", stretches_json(said)},
       {"changes", {{"lines", 641}, {"speeds", 3}, {"feeds", 38}}},
       {"notes", Json::array({said("The robot's stiffness is not known: deflection was not looked at as decided.")})},
+      {"compensation", nullptr},
       {"gamma_map", gamma_map_json(blocks)}};
   return decision.dump();
 }

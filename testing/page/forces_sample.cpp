@@ -99,6 +99,7 @@ Json engagement_json() {
   for (int ring = 0; ring < shown_rings; ++ring) {
     const double position_rad = position_of(ring, shown_rings);
     engagement.push_back({{"height_mm", radius_m * (1.0 - std::cos(position_rad)) / units::mm},
+                          {"radius_mm", radius_m * std::sin(position_rad) / units::mm},
                           {"position_deg", position_rad / units::deg},
                           {"arcs_deg", Json::array({Json::array({0.0, exit_of(position_rad) / units::deg})})}});
   }
@@ -125,7 +126,13 @@ Json revolution_json(const Turn& turn) {
               {"removal_rate_mm3_per_s", chip_area_m2 * feed_m_per_s / units::mm3},
               {"deflection_um", list(turn.deflection_um())},
               {"peak_deflection_um", 3.1 * turn.deflection_um().norm()},
-              {"vibration", {{"verdict", "stable"}, {"chatter_frequency_hz", nullptr}}},
+              {"vibration",
+               {{"verdict", "stable"},
+                {"chatter_frequency_hz", nullptr},
+                {"chatter_amplitude_um", 0.0},
+                {"spectral_radius", 0.62},
+                {"missed_share", 0.0},
+                {"error_estimate", 1e-4}}},
               {"engagement", engagement_json()},
               {"rotation_deg", list(turn.rotation_deg)},
               {"torque_by_rotation_n_m", list(turn.torque_n_m)}};
@@ -198,6 +205,14 @@ Json program_json(const Turn& turn) {
   auto worst = blocks.get<std::vector<Json>>();
   std::ranges::stable_sort(worst, higher("peak_f_n"));
   worst.resize(10);
+  for (Json& block : worst) {
+    for (const char* column :
+         {"torque_n_m", "power_w", "peak_power_w", "cutting_time_s", "feed_per_tooth_mm", "removed_mm3"})
+      block[column] = 0.1;
+    for (const char* column :
+         {"deflection_um", "deflection_x_um", "deflection_y_um", "deflection_z_um", "condition_number"})
+      block[column] = nullptr;
+  }
   Json highest = Json::object();
   for (const char* column :
        {"peak_f_n", "revolution_torque_n_m", "peak_torque_n_m", "sustained_power_w", "peak_deflection_um"}) {
@@ -217,6 +232,8 @@ Json program_json(const Turn& turn) {
 Json sweep_json() {
   Json rotation = Json::array();
   Json deflection = Json::array();
+  Json along_normal = Json::array();
+  Json limit_distance = Json::array();
   Json condition = Json::array();
   double best_deg = 0.0;
   double best_um = std::numeric_limits<double>::infinity();
@@ -226,6 +243,8 @@ Json sweep_json() {
     const double bent_um = 38.0 - 9.0 * std::cos(2.0 * gamma - 0.8) - 5.0 * std::sin(gamma);
     rotation.push_back(gamma / units::deg);
     deflection.push_back(reachable ? Json(bent_um) : Json());
+    along_normal.push_back(reachable ? Json(0.7 * bent_um) : Json());
+    limit_distance.push_back(reachable ? Json(40.0) : Json());
     condition.push_back(reachable ? Json(8.0 + 30.0 * std::pow(std::sin(0.7 * gamma + 0.2), 4)) : Json());
     if (!reachable || bent_um >= best_um) continue;
     best_um = bent_um;
@@ -233,6 +252,8 @@ Json sweep_json() {
   }
   return {{"rotation_deg", std::move(rotation)},
           {"deflection_um", std::move(deflection)},
+          {"along_normal_um", std::move(along_normal)},
+          {"limit_distance_deg", std::move(limit_distance)},
           {"condition_number", std::move(condition)},
           {"best_deg", best_deg},
           {"best_deflection_um", best_um},
@@ -247,7 +268,7 @@ std::string sample_forces(const std::string& text) {
     return {{"label", named(label)}, {"value", named(value)}};
   };
   const Turn turn;
-  Json out = {{"force_on", "tool"}};
+  Json out = {{"document", "forces/1"}, {"force_on", "tool"}};
   out.update(revolution_json(turn));
   out["spindle_rotation"] = sweep_json();
   out.update(program_json(turn));
@@ -256,6 +277,7 @@ std::string sample_forces(const std::string& text) {
                               fact("Feed", "0.02 mm per tooth at 18 000 rpm")});
   out["warnings"] =
       Json::array({named("The radial coefficient is an assumption: it was not measured on this material.")});
+  out["assumed"] = Json::array();
   out["notes"] = Json::array({named("Forces of this sample come from a formula without runout.")});
   return out.dump();
 }

@@ -65,7 +65,7 @@ Json tool(const std::string& name, double overhang_mm, double peak_hz, double pe
           {"recommended",
            {{"spindle_speed_rpm", 14200.0},
             {"axial_depth_mm", 1.6 * limit_mm},
-            {"limit_depth_mm", 2.1 * limit_mm},
+            {"window_limit_mm", 2.1 * limit_mm},
             {"removal_rate_mm3_per_s", 700.0 * limit_mm},
             {"limited_by", "chatter"}}},
           {"reason", nullptr},
@@ -83,6 +83,7 @@ std::string sample_coefficients(const std::string& text) {
                         {"std", coefficients(0.02)}});
   }
   const Json json = {
+      {"document", "coefficients/1"},
       {"coefficients", coefficients(1.0)},
       {"identification",
        {{"status", "identified"},
@@ -90,6 +91,8 @@ std::string sample_coefficients(const std::string& text) {
         {"std", coefficients(0.01)},
         {"r_squared", of_each(0.9987, 0.9971, 0.963)},
         {"noise_n", of_each(1.1, 1.6, 0.9)},
+        {"correlation", of_each(-0.91, -0.91, -0.91)},
+        {"assumed", Json::array()},
         {"depends_on_speed", true},
         {"speed_probability", 0.0021},
         {"notes",
@@ -114,11 +117,14 @@ std::string sample_stiffness(const std::string& text) {
     line.push_back(k + 2);
   }
   const Json json = {
+      {"document", "stiffness/1"},
       {"joint_stiffness_n_m_per_rad", {1.9e6, 2.4e6, 1.1e6, 4.1e5, 2.6e5, nullptr}},
       {"unit", {"N m/rad", "N m/rad", "N m/rad", "N m/rad", "N m/rad", "N m/rad"}},
       {"std", {6e4, 5e4, 4e4, 3e4, 5e4, nullptr}},
       {"identifiable", {true, true, true, true, true, false}},
       {"reason", {nullptr, nullptr, nullptr, nullptr, nullptr, text.empty() ? "no load turns it" : text}},
+      {"joint_compliance_rad_per_n_m", {5.3e-7, 4.2e-7, 9.1e-7, 2.4e-6, 3.8e-6, nullptr}},
+      {"compliance_std", {1.7e-8, 8.7e-9, 3.3e-8, 1.8e-7, 7.4e-7, nullptr}},
       {"line", line},
       {"displacement_mm", displacement},
       {"residual_mm", residual},
@@ -140,7 +146,8 @@ std::string sample_joint(const std::string& text) {
     identifiable[names.at(i)] = i != 3;
   }
   for (int i = 0; i < 40; ++i) best.push_back(2e-8 + 6e-7 * std::exp(-0.3 * i));
-  const Json json = {{"joint", joint},
+  const Json json = {{"document", "joint/1"},
+                     {"joint", joint},
                      {"objective", 2e-8},
                      {"relative_error", 0.034},
                      {"std", deviation},
@@ -161,6 +168,7 @@ std::string sample_tools(const std::string& text) {
   failed["modes"] = Json::array();
   failed["failure"] = said("overhang_mm is above the 80 mm that the holder was measured with");
   Json json = {
+      {"document", "tools/1"},
       {"tools", Json::array({tool(said("stub"), 30.0, 1310.0, 0.62, 0.91), tool("standard", 42.0, 940.0, 1.1, 0.52),
                              tool("long", 60.0, 610.0, 2.4, 0.21), failed})},
       {"holder", nullptr}};

@@ -111,12 +111,20 @@ std::vector<Json> recommendations(const LimitCurve& lobes) {
                      {"feed_mm_per_min", feed_mm_per_min},
                      {"removal_rate_mm3_per_s", depth_mm * 1.8 * feed_mm_per_min / 60.0},
                      {"limited_by", "mode 8, chatter"},
-                     {"limit_depth_mm", depth_mm / 0.8},
+                     {"window_limit_mm", depth_mm / 0.8},
                      {"window_chatter_frequency_hz", 566.4},
                      {"torque_n_m", 0.08},
                      {"power_w", 0.08 * rpm * units::rpm},
                      {"surface_error_um", 12.5},
                      {"peak_deflection_um", 31.0},
+                     {"forced_vibration",
+                      {{"amplitude_um", 9.4},
+                       {"harmonic", 1},
+                       {"of", "tooth passing"},
+                       {"frequency_hz", teeth * rpm / 60.0},
+                       {"harmonic_um", 9.1},
+                       {"mode", 8},
+                       {"mode_of", "tool"}}},
                      {"mode", 8},
                      {"mode_of", "tool"}});
   }
@@ -240,6 +248,7 @@ std::string sample_plan(const std::string& text) {
     return std::ranges::count_if(cuts, [&](const Json& cut) { return cut["agrees"] == agrees; });
   };
   const Json plan = {
+      {"document", "plan/1"},
       {"facts",
        Json::array({fact("Cutter", said("3 teeth, 12 mm, flat end")), fact("Cut", "up-milling, 1.8 mm radial depth"),
                     fact("Feed", "0.01 mm per tooth, towards 0°"), fact("Material", "Kt 712 N/mm², Kr 287 N/mm²"),

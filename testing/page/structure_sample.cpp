@@ -134,8 +134,12 @@ std::string sample_frf(const std::string& text) {
     const std::string file = "hit_" + std::string(k <= 5 ? "x_" : "y_") + std::to_string((k - 1) % 5 + 1) + ".csv";
     Json reasons = Json::array();
     if (!accepted) reasons.push_back(said("double hit: a second one of 7 % of the peak after 3.1 ms"));
-    json["hits"].push_back(
-        {{"file", accepted ? file : said(file.c_str())}, {"accepted", accepted}, {"reasons", reasons}});
+    json["hits"].push_back({{"file", accepted ? file : said(file.c_str())},
+                            {"accepted", accepted},
+                            {"reasons", reasons},
+                            {"peak_force_n", 310.0},
+                            {"pulse_width_s", 3e-4},
+                            {"second_pulse_ratio", accepted ? 0.004 : 0.07}});
   }
   for (const char* name : {"xx", "yx", "xy", "yy"}) {
     const bool direct = name[0] == name[1];
@@ -146,8 +150,13 @@ std::string sample_frf(const std::string& text) {
       remedies = {said("hit again, closer to the axis"), "check that the accelerometer sits where the hammer hits"};
     }
     json["grades"][name] = {{"grade", direct ? "good" : "usable"},
+                            {"hits", name[1] == 'x' ? 4 : 5},
+                            {"mean_coherence", direct ? 0.998 : 0.93},
+                            {"relative_noise", direct ? 0.01 : 0.06},
+                            {"reciprocity_error", direct ? Json() : Json(0.38)},
                             {"excited_band_hz", {5, 940}},
                             {"lowest_trustworthy_frequency_hz", 8},
+                            {"peaks", Json::array()},
                             {"faults", std::move(faults)},
                             {"remedies", std::move(remedies)}};
   }
@@ -178,6 +187,7 @@ std::string sample_assembly(const std::string& text) {
             {"measured_frequency_hz", measured_hz}};
   };
   const Json json = {
+      {"document", "assembly/1"},
       {"file", said("assembly.toml")},
       {"tool", Json::array({fluted, segment(7.0, 11.5, 2.0, 580.0, 14400.0), segment(4.0, 12.0, 2.0, 580.0, 14400.0)})},
       {"joint",

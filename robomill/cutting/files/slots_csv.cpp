@@ -6,17 +6,25 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/cutting/files/slots_schema.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/json.hpp"
+#include "robomill/io/schema.hpp"
 #include "robomill/io/table.hpp"
 
 namespace robomill::cutting {
 namespace {
+
+using io::key;
+using io::of;
+using io::Row;
+using io::Schema;
+using io::Use;
 
 struct Column {
   const char* key;
@@ -71,82 +79,172 @@ SlotForce read_row(const io::TextTable& table, const io::TextTable::Row& row) {
   return slot;
 }
 
-struct Named {
-  const char* name;
-  const CoefficientPair* pair;
-};
+constexpr std::array<const char*, 3> directions = {"tangential", "radial", "axial"};
+
 template <class Fit>
-std::array<Named, 3> pairs_of(const Fit& fit) {
-  return {{{"tangential", &fit.tangential}, {"radial", &fit.radial}, {"axial", &fit.axial}}};
+std::array<const CoefficientPair*, 3> pairs_of(const Fit& fit) {
+  return {&fit.tangential, &fit.radial, &fit.axial};
+}
+
+/// Of each direction.
+using Each = std::array<double, 3>;
+template <class Fit>
+Each of_each(const Fit& fit, double CoefficientPair::*value) {
+  Each out{};
+  for (std::size_t i = 0; i < 3; ++i) out[i] = pairs_of(fit)[i]->*value;
+  return out;
+}
+
+const Schema<Each>& each_table() {
+  static const Schema<Each> table(
+      "by_direction", "a number of each direction",
+      [] {
+        std::vector<Row<Each>> rows;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const auto value = [i](const Each& each) { return each[i]; };
+          rows.push_back(key(directions[i], value, "of the fit in this direction").nullable());
+        }
+        return rows;
+      }(),
+      Use::written);
+  return table;
 }
 
 /// Each pair's numbers under the keys of coefficients.toml.
+struct Values {
+  Each cutting_n_per_m2 = {}, edge_n_per_m = {};
+};
+
+const Schema<Values>& values_table() {
+  static const Schema<Values> table(
+      "coefficient_values", "of cutting and of the edge",
+      [] {
+        std::vector<Row<Values>> rows;
+        const auto add = [&rows](const char* ending, Each Values::*member, const char* meaning) {
+          for (std::size_t i = 0; i < 3; ++i) {
+            const auto value = [i, member](const Values& values) { return (values.*member)[i]; };
+            rows.push_back(key(std::string(directions[i]) + ending, value, meaning).nullable());
+          }
+        };
+        add("_n_per_mm2", &Values::cutting_n_per_m2, "of cutting");
+        add("_edge_n_per_mm", &Values::edge_n_per_m, "of the edge");
+        return rows;
+      }(),
+      Use::written);
+  return table;
+}
+
 template <class Fit>
-io::Json values_of(const Fit& fit, double CoefficientPair::*cutting, double CoefficientPair::*edge) {
-  io::Json out = io::Json::object();
-  for (const auto& [name, pair] : pairs_of(fit))
-    out[fmt::format("{}_n_per_mm2", name)] = io::number(pair->*cutting / units::n_per_mm2);
-  for (const auto& [name, pair] : pairs_of(fit))
-    out[fmt::format("{}_edge_n_per_mm", name)] = io::number(pair->*edge / units::n_per_mm);
+Values deviations_of(const Fit& fit) {
+  return {of_each(fit, &CoefficientPair::cutting_deviation_n_per_m2),
+          of_each(fit, &CoefficientPair::edge_deviation_n_per_m)};
+}
+template <class Fit>
+Values coefficients_of(const Fit& fit) {
+  return {of_each(fit, &CoefficientPair::cutting_n_per_m2), of_each(fit, &CoefficientPair::edge_n_per_m)};
+}
+
+const Schema<SpeedGroup>& group_table() {
+  static const Schema<SpeedGroup> table(
+      "speed_group", "the slots of one spindle speed",
+      {key("spindle_speed_rpm", &SpeedGroup::spindle_speed_rad_per_s, "their mean").nullable(),
+       key("rows", &SpeedGroup::rows, "how many"),
+       key(
+           "coefficients", [](const SpeedGroup& group) { return coefficients_of(group); }, values_table(),
+           "fitted to them alone"),
+       key(
+           "std", [](const SpeedGroup& group) { return deviations_of(group); }, values_table(), "standard deviations")},
+      Use::written);
+  return table;
+}
+
+/// A slot, its line in the file and what the fit leaves of its force.
+struct FittedSlot {
+  SlotForce slot = {};
+  std::size_t line = 0;
+  Eigen::Vector3d residual_n = Eigen::Vector3d::Zero();
+};
+
+const Schema<FittedSlot>& slot_table() {
+  using Slot = FittedSlot;
+  static const Schema<Slot> table(
+      "fitted_slot", "a slot as the file has it",
+      {key("line", &Slot::line, "of the file"),
+       of(&Slot::slot, key("feed_per_tooth_mm", &SlotForce::feed_per_tooth_m, "of the slot")),
+       of(&Slot::slot, key("axial_depth_mm", &SlotForce::axial_depth_m, "of the slot")),
+       key(
+           "spindle_speed_rpm", [](const Slot& at) { return io::if_positive(at.slot.spindle_speed_rad_per_s); },
+           "none: not given")
+           .nullable(),
+       of(&Slot::slot, key("force_n", &SlotForce::mean_force_n, "mean in x, y, z").entries(3)),
+       key("residual_n", &Slot::residual_n, "the same less the fit's").entries(3)},
+      Use::written);
+  return table;
+}
+
+struct FitView {
+  const SlotFit* fit = nullptr;
+  const SlotsFile* file = nullptr;
+  const std::vector<Assumption>* assumed = nullptr;
+};
+
+/// A number of each direction of the fit.
+Row<FitView> each_key(std::string name, double CoefficientPair::*value, std::string meaning) {
+  return key(
+      std::move(name), [value](const FitView& view) { return of_each(*view.fit, value); }, each_table(),
+      std::move(meaning));
+}
+
+std::vector<FittedSlot> slots_of(const FitView& view) {
+  std::vector<FittedSlot> out;
+  for (std::size_t i = 0; i < view.file->lines.size(); ++i)
+    out.push_back({view.file->slots[i], view.file->lines[i], view.fit->residual_n.col(static_cast<Eigen::Index>(i))});
   return out;
 }
-template <class Fit>
-io::Json deviations_of(const Fit& fit) {
-  return values_of(fit, &CoefficientPair::cutting_deviation_n_per_m2, &CoefficientPair::edge_deviation_n_per_m);
-}
-template <class Fit>
-io::Json coefficients_of(const Fit& fit) {
-  return values_of(fit, &CoefficientPair::cutting_n_per_m2, &CoefficientPair::edge_n_per_m);
+
+const Schema<FitView>& identification_table() {
+  using View = FitView;
+  static const Schema<View> table(
+      "identification", "how well the coefficients are known",
+      {key(
+           "status",
+           [](const View& v) { return v.fit->status == SlotFit::Status::identified ? "identified" : "edge unknown"; },
+           "what the slots determine")
+           .words({"identified", "edge unknown"}),
+       key(
+           "rows", [](const View& v) { return v.file->slots.size(); }, "slots"),
+       key(
+           "std", [](const View& v) { return deviations_of(*v.fit); }, values_table(), "standard deviations"),
+       each_key("r_squared", &CoefficientPair::r_squared, "share of the force that the fit explains"),
+       each_key("noise_n", &CoefficientPair::noise_n, "scatter about the fit"),
+       each_key("correlation", &CoefficientPair::correlation, "of the two coefficients"),
+       key(
+           "depends_on_speed", [](const View& v) { return v.fit->depends_on_speed; }, "beyond the scatter"),
+       key(
+           "speed_probability", [](const View& v) { return v.fit->speed_probability; },
+           "of such a difference between speeds by chance")
+           .nullable(),
+       key(
+           "notes", [](const View& v) { return v.fit->notes; }, "sentences for the user"),
+       key(
+           "assumed", [](const View& v) { return *v.assumed; }, io::assumption_table(), "what the input did not give"),
+       key(
+           "residuals", [](const View& v) { return slots_of(v); }, slot_table(), "of each slot"),
+       key(
+           "by_speed", [](const View& v) { return v.fit->by_speed; }, group_table(), "where there are several")},
+      Use::written);
+  return table;
 }
 
-template <class Fit>
-io::Json of_each(const Fit& fit, double CoefficientPair::*value) {
-  io::Json out = io::Json::object();
-  for (const auto& [name, pair] : pairs_of(fit)) out[name] = io::number(pair->*value);
-  return out;
-}
-
-io::Json vector_json(const Eigen::Vector3d& v) {
-  return {io::number(v.x()), io::number(v.y()), io::number(v.z())};
-}
-
-/// A slot as the file has it, and how far its force is from the fit's.
-io::Json residual_json(const SlotForce& slot, std::size_t line, const Eigen::Vector3d& residual_n) {
-  return {{"line", line},
-          {"feed_per_tooth_mm", io::number(slot.feed_per_tooth_m / units::mm)},
-          {"axial_depth_mm", io::number(slot.axial_depth_m / units::mm)},
-          {"spindle_speed_rpm", io::positive(slot.spindle_speed_rad_per_s, units::rpm)},
-          {"force_n", vector_json(slot.mean_force_n)},
-          {"residual_n", vector_json(residual_n)}};
-}
-
-io::Json identification(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
-  io::Json json;
-  const bool identified = fit.status == SlotFit::Status::identified;
-  json["status"] = identified ? "identified" : "edge unknown";
-  json["rows"] = file.slots.size();
-  json["std"] = deviations_of(fit);
-  json["r_squared"] = of_each(fit, &CoefficientPair::r_squared);
-  json["noise_n"] = of_each(fit, &CoefficientPair::noise_n);
-  json["correlation"] = of_each(fit, &CoefficientPair::correlation);
-  json["depends_on_speed"] = fit.depends_on_speed;
-  json["speed_probability"] = io::number(fit.speed_probability);
-  json["notes"] = fit.notes;
-  json["assumed"] = io::assumed_json(assumed);
-  io::Json residuals = io::Json::array();
-  for (std::size_t i = 0; i < file.lines.size(); ++i) {
-    residuals.push_back(residual_json(file.slots[i], file.lines[i], fit.residual_n.col(static_cast<Eigen::Index>(i))));
-  }
-  json["residuals"] = residuals;
-  io::Json speeds = io::Json::array();
-  for (const SpeedGroup& group : fit.by_speed) {
-    speeds.push_back({{"spindle_speed_rpm", io::number(group.spindle_speed_rad_per_s / units::rpm)},
-                      {"rows", group.rows},
-                      {"coefficients", coefficients_of(group)},
-                      {"std", deviations_of(group)}});
-  }
-  json["by_speed"] = speeds;
-  return json;
+const Schema<FitView>& coefficients_table() {
+  static const Schema<FitView> table(
+      "coefficients", "cutting force coefficients, from the mean forces of slots",
+      {key(
+           "coefficients", [](const FitView& v) { return coefficients_of(*v.fit); }, values_table(), "of all slots"),
+       key(
+           "identification", [](const FitView& v) { return v; }, identification_table(), "how well they are known")},
+      Use::written, 1);
+  return table;
 }
 
 /// JSON values as TOML has them too: inline tables in place of objects; what is null is left out.
@@ -164,6 +262,10 @@ std::string inline_toml(const io::Json& json) {
 
 }  // namespace
 
+const io::TableInfo& coefficients_document() {
+  return coefficients_table().info();
+}
+
 SlotsFile read_slots(const std::filesystem::path& path) {
   SlotsFile out;
   const io::TextTable table = io::parse_text_table(io::read_file(path), path.string(), out.notes);
@@ -179,7 +281,7 @@ SlotsFile read_slots(const std::filesystem::path& path) {
 
 std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
   std::string text = coefficients_toml(fit.coefficients()) + "\n[identification]\n";
-  const io::Json reported = identification(fit, file, assumed);
+  const io::Json reported = identification_table().write({&fit, &file, &assumed});
   for (const auto& [key, value] : reported.items()) {
     if (!value.is_null()) text += fmt::format("{} = {}\n", key, inline_toml(value));
   }
@@ -187,16 +289,15 @@ std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file, const std::
 }
 
 std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
-  io::Json json;
-  json["coefficients"] = coefficients_of(fit);
-  json["identification"] = identification(fit, file, assumed);
-  return io::dump(json);
+  return io::dump(coefficients_table().write({&fit, &file, &assumed}));
 }
 
 std::string slot_fit_csv(const SlotFit& fit) {
   std::string out = "spindle_speed_rpm,coefficient,value,std,r_squared,noise_n\n";
   const auto add = [&out](const std::string& speed, const auto& of) {
-    for (const auto& [name, pair] : pairs_of(of)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const char* const name = directions[i];
+      const CoefficientPair* const pair = pairs_of(of)[i];
       const std::string quality = io::csv_number(pair->r_squared) + "," + io::csv_number(pair->noise_n);
       io::add_csv_row(
           out, {speed, fmt::format("{}_n_per_mm2", name), io::csv_number(pair->cutting_n_per_m2, units::n_per_mm2),

@@ -3,11 +3,15 @@
 #include <algorithm>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/files/check_json.hpp"
 #include "robomill/cell/files/posture_json.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
+#include "robomill/cutting/files/slots_schema.hpp"
 #include "robomill/io/schema.hpp"
 #include "robomill/jobs/files/lobes_schema.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/files/tools_files.hpp"
+#include "robomill/live/files/recorded_run_json.hpp"
 #include "robomill/modal/files/frf_schema.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
 #include "robomill/path/files/smooth_object.hpp"
@@ -34,7 +38,9 @@ const std::vector<Entry>& documents() {
           &coupling::joint_table().info(), &robot::stiffness_table().info(), &modal::frf_table().info(),
           &process::blocks_table().info(), &process::forces_table().info(), &cell::modes_document_table().info(),
           &lobes_json_table().info(), &stability::sweep_table().info(), &stability::comparison_table().info(),
-          &stability::explain_table().info(), &path::smooth_table().info(), &simulation::simulation_table().info()})
+          &stability::explain_table().info(), &path::smooth_table().info(), &simulation::simulation_table().info(),
+          &cell::check_table().info(), &tools_table().info(), &cutting::coefficients_document(),
+          &live::recorded_run_table().info()})
       out.push_back({table->name + ".json", *table});
     return out;
   }();

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/files/tools_files.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -16,8 +17,10 @@
 namespace robomill::jobs {
 namespace {
 
-using io::Json;
-using io::number;
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
 
 const decision::Operation* best_of(const ToolResult& tool) {
   return tool.recommendation && tool.recommendation->recommended ? &*tool.recommendation->recommended : nullptr;
@@ -42,39 +45,83 @@ std::string cell(double value, double unit, bool known = true) {
 }
 
 /// What a row has of plan.json's operation.
-Json recommended_json(const decision::Operation* op) {
-  Json json;
-  if (op == nullptr) return json;
-  const Json all = operation_table().write(*op);
-  for (const char* key :
-       {"spindle_speed_rpm", "axial_depth_mm", "window_limit_mm", "removal_rate_mm3_per_s", "limited_by"}) {
-    json[key] = all[key];
-  }
-  return json;
+const Schema<decision::Operation>& tool_operation_table() {
+  static const Schema<decision::Operation> table(
+      "tool_operation", "the best speed and depth of a tool",
+      [] {
+        std::vector<Row<decision::Operation>> rows;
+        for (const char* const name :
+             {"spindle_speed_rpm", "axial_depth_mm", "window_limit_mm", "removal_rate_mm3_per_s", "limited_by"}) {
+          rows.push_back(*std::ranges::find_if(operation_table().rows(),
+                                               [name](const auto& row) { return row.key.name == name; }));
+        }
+        return rows;
+      }(),
+      Use::written);
+  return table;
 }
 
-Json tool_json(const ToolResult& tool) {
-  Json modes = Json::array();
-  for (const modal::Mode& mode : tool.modes.modes) {
-    modes.push_back({{"frequency_hz", number(mode.frequency_hz)}, {"damping_ratio", number(mode.damping_ratio)}});
-  }
-  const bool done = tool.failure.empty();
-  Json json;
-  json["tool"] = tool.name;
-  json["teeth"] = tool.teeth > 0 ? Json(tool.teeth) : Json();
-  json["diameter_mm"] = number(tool.diameter_m / units::mm);
-  json["overhang_mm"] = number(tool.overhang_m / units::mm);
-  json["failure"] = done ? Json() : Json(tool.failure);
-  json["peak_hz"] = done ? number(tool.peak_hz) : Json();
-  json["peak_um_per_n"] = done ? number(tool.peak_m_per_n / units::um) : Json();
-  json["modes"] = modes;
-  json["fit_relative_error"] = done ? number(tool.fit_error) : Json();
-  json["suspect_lines"] = tool.suspect_lines;
-  json["lowest_limit_mm"] = tool.lowest_limit_m ? number(*tool.lowest_limit_m / units::mm) : Json();
-  json["recommended"] = recommended_json(best_of(tool));
-  json["reason"] = tool.recommendation || !tool.no_cut.empty() ? Json(reason_of(tool)) : Json();
-  json["notes"] = tool.notes;
-  return json;
+const Schema<modal::Mode>& tool_mode_table() {
+  static const Schema<modal::Mode> table("tool_mode", "a mode at the tip of a tool",
+                                         {key("frequency_hz", &modal::Mode::frequency_hz, "natural frequency"),
+                                          key("damping_ratio", &modal::Mode::damping_ratio, "of critical damping")},
+                                         Use::written);
+  return table;
+}
+
+/// A number of a tool that did not fail.
+Row<ToolResult> tool_number(std::string name, double ToolResult::*member, std::string meaning) {
+  const auto value = [member](const ToolResult& tool) {
+    return tool.failure.empty() ? std::optional(tool.*member) : std::nullopt;
+  };
+  return key(std::move(name), value, std::move(meaning)).nullable();
+}
+
+const Schema<ToolResult>& tool_row_table() {
+  using Tool = ToolResult;
+  static const Schema<Tool> table(
+      "tool_row", "what one tool of a list comes to in the holder",
+      {key("tool", &Tool::name, "as the list names it"),
+       key(
+           "teeth", [](const Tool& tool) { return tool.teeth > 0 ? std::optional(tool.teeth) : std::nullopt; },
+           "none: neither list nor cut gives them")
+           .nullable(),
+       key("diameter_mm", &Tool::diameter_m, "at the tip"),
+       key("overhang_mm", &Tool::overhang_m, "from the tip to the joint"),
+       key("failure", &Tool::failure, "why numbers are missing").nullable(),
+       tool_number("peak_hz", &Tool::peak_hz, "where |xx| is greatest"),
+       tool_number("peak_um_per_n", &Tool::peak_m_per_n, "|xx| there"),
+       key(
+           "modes", [](const Tool& tool) { return tool.modes.modes; }, tool_mode_table(), "fitted to the tip's FRFs"),
+       tool_number("fit_relative_error", &Tool::fit_error, "of the fit"),
+       key("suspect_lines", &Tool::suspect_lines, "where the measured holder would create energy"),
+       key("lowest_limit_mm", &Tool::lowest_limit_m, "over all speeds; none: no cut, or stable at every depth")
+           .nullable(),
+       key(
+           "recommended", [](const Tool& tool) { return best_of(tool); }, tool_operation_table(), "none: see reason")
+           .nullable(),
+       // Empty of a tool with a cut and nothing to explain.
+       key(
+           "reason",
+           [](const Tool& tool) {
+             return tool.recommendation || !tool.no_cut.empty() ? std::optional(reason_of(tool)) : std::nullopt;
+           },
+           "of the recommendation, or why there is none; none: no cut")
+           .null_list(),
+       key("notes", &Tool::notes, "sentences for the user")},
+      Use::written);
+  return table;
+}
+
+const Schema<coupling::HolderResult>& measured_holder_table() {
+  using coupling::HolderResult;
+  static const Schema<HolderResult> table(
+      "measured_holder", "a holder that was measured",
+      {key("unreliable_hz", &HolderResult::unreliable_hz, "lines where an error of its measurement becomes a large one")
+           .exact(),
+       key("notes", &HolderResult::notes, "sentences for the user")},
+      Use::written);
+  return table;
 }
 
 }  // namespace
@@ -106,13 +153,21 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
   return out;
 }
 
+const Schema<ToolsView>& tools_table() {
+  static const Schema<ToolsView> table(
+      "tools", "tools of a list in one holder",
+      {key(
+           "tools", [](const ToolsView& view) { return *view.tools; }, tool_row_table(), "a row a tool"),
+       key(
+           "holder", [](const ToolsView& view) { return *view.holder; }, measured_holder_table(),
+           "where it was measured")
+           .nullable()},
+      Use::written, 1);
+  return table;
+}
+
 std::string tools_json(const std::vector<ToolResult>& results, const std::optional<coupling::HolderResult>& holder) {
-  Json tools = Json::array();
-  for (const ToolResult& tool : results) tools.push_back(tool_json(tool));
-  Json json;
-  json["tools"] = tools;
-  json["holder"] = holder ? Json{{"unreliable_hz", holder->unreliable_hz}, {"notes", holder->notes}} : Json();
-  return io::dump(json);
+  return io::dump(tools_table().write({&results, &holder}));
 }
 
 void write_tips(const std::filesystem::path& folder, const std::vector<ToolResult>& results) {

@@ -1,121 +1,200 @@
 #include "robomill/live/files/recorded_run_json.hpp"
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "robomill/base/units.hpp"
-#include "robomill/io/json.hpp"
-#include "robomill/modal/files/mode_json.hpp"
+#include "robomill/modal/files/mode_schema.hpp"
+#include "robomill/monitor/files/event_schema.hpp"
 #include "robomill/signal/files/bands_json.hpp"
 
 namespace robomill::live {
 namespace {
 
+using io::add_rows;
+using io::if_positive;
 using io::Json;
-using io::number;
-using io::positive;
-using signal::band_json;
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
+using signal::band_key;
 
-Json state_json(monitor::State state, monitor::BlindReason reason) {
-  return {{"state", monitor::to_string(state)},
-          {"reason", state == monitor::State::blind ? Json(monitor::to_string(reason)) : Json(nullptr)}};
+struct Fact {
+  std::string label = {}, value = {};
+};
+
+const Schema<Fact>& fact_table() {
+  static const Schema<Fact> table("recorded_fact", "what was recorded",
+                                  {key("label", &Fact::label, "of what"), key("value", &Fact::value, "in words")},
+                                  Use::written);
+  return table;
+}
+
+const Schema<RecordedChannel>& channel_table() {
+  static const Schema<RecordedChannel> table("recorded_channel", "the samples of one channel over time",
+                                             {key("name", &RecordedChannel::name, "as in its file"),
+                                              band_key("wave", &RecordedChannel::wave, "of the samples")},
+                                             Use::written);
+  return table;
 }
 
 /// Whole decibels: finer ones no colour shows. A row a frequency.
-Json spectrogram_json(const Spectrogram& spectrogram) {
-  if (spectrogram.level_db.size() == 0) return nullptr;
-  Json rows = Json::array();
+std::vector<std::vector<std::optional<int>>> levels(const Spectrogram& spectrogram) {
+  std::vector<std::vector<std::optional<int>>> rows;
   for (Eigen::Index i = 0; i < spectrogram.level_db.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k < spectrogram.level_db.cols(); ++k) {
-      const double level = spectrogram.level_db(i, k);
-      row.push_back(std::isnan(level) ? Json(nullptr) : Json(static_cast<int>(std::lround(level))));
-    }
-    rows.push_back(std::move(row));
+    std::vector<std::optional<int>>& row = rows.emplace_back();
+    for (const double level : spectrogram.level_db.row(i))
+      row.push_back(std::isnan(level) ? std::nullopt : std::optional(static_cast<int>(std::lround(level))));
   }
-  return {{"channel", spectrogram.channel},
-          {"begin_s", number(spectrogram.begin_s)},
-          {"step_s", number(spectrogram.step_s)},
-          {"max_frequency_hz", number(spectrogram.max_frequency_hz)},
-          {"frequency_hz", io::numbers(spectrogram.frequency_hz)},
-          {"level_db", std::move(rows)}};
+  return rows;
 }
 
-Json decisions_json(const RecordedRun& run) {
-  return {{"run_s", number(run.decision_run_s)},
-          {"score", band_json(run.score)},
-          {"threshold", band_json(run.threshold)},
-          {"energy_entropy", band_json(run.energy_entropy)},
-          {"chatter_frequency_hz", band_json(run.chatter_frequency_hz)},
-          {"spindle_speed_rpm", band_json(run.spindle_speed_rad_per_s, units::rpm)},
-          {"spindle_speed_std_rpm", band_json(run.spindle_speed_std_rad_per_s, units::rpm)}};
+const Schema<Spectrogram>& spectrogram_table() {
+  static const Schema<Spectrogram> table(
+      "spectrogram", "synchrosqueezed spectrum over time, a row a frequency",
+      {key("channel", &Spectrogram::channel, "that was loudest in chatter, or the first"),
+       key("begin_s", &Spectrogram::begin_s, "of the first column"),
+       key("step_s", &Spectrogram::step_s, "of the columns"),
+       key("max_frequency_hz", &Spectrogram::max_frequency_hz, "highest worth drawing"),
+       key("frequency_hz", &Spectrogram::frequency_hz, "of the rows").exact(),
+       key(
+           "level_db", [](const Spectrogram& spectrogram) { return levels(spectrogram); },
+           "below the strongest of all; none: a gap")
+           .nullable()},
+      Use::written);
+  return table;
 }
 
-Json alarm_json(const RecordedAlarm& alarm) {
-  const std::string no_speed(name_in(monitor::no_speed_names, alarm.no_speed));
-  const bool hidden = alarm.synchronous != monitor::SynchronousChatter::none;
-  Json out = {{"count", alarm.count},
-              {"from_s", number(alarm.from_s)},
-              {"to_s", number(alarm.to_s)},
-              {"chatter_s", number(alarm.chatter_s)},
-              {"low_frequency_hz", number(alarm.low_frequency_hz)},
-              {"high_frequency_hz", number(alarm.high_frequency_hz)},
-              {"chatter_frequency_hz", number(alarm.chatter_frequency_hz)},
-              {"chatter_frequency_std_hz", number(alarm.chatter_frequency_std_hz)},
-              {"channel", alarm.channel.empty() ? Json(nullptr) : Json(alarm.channel)},
-              {"hidden", hidden ? Json(monitor::to_string(alarm.synchronous)) : Json(nullptr)},
-              {"suggested_spindle_speed_rpm", positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)},
-              {"line_frequencies_hz", alarm.line_hz},
-              {"no_speed", no_speed.empty() ? Json(nullptr) : Json(no_speed)}};
-  modal::set_mode(out, alarm.mode);
-  return out;
+const Schema<RecordedRun>& decisions_table() {
+  using Run = RecordedRun;
+  static const Schema<Run> table(
+      "recorded_decisions", "numbers of the decisions, over equal runs of time",
+      {key("run_s", &Run::decision_run_s, "of one run"), band_key("score", &Run::score, "of the detector"),
+       band_key("threshold", &Run::threshold, "of the score"),
+       band_key("energy_entropy", &Run::energy_entropy, "of the spectrum"),
+       band_key("chatter_frequency_hz", &Run::chatter_frequency_hz, "while in chatter"),
+       band_key("spindle_speed_rpm", &Run::spindle_speed_rad_per_s, "tracked"),
+       band_key("spindle_speed_std_rpm", &Run::spindle_speed_std_rad_per_s, "its standard deviation")},
+      Use::written);
+  return table;
+}
+
+/// A state with its reason, and times.
+template <class T>
+std::vector<Row<T>> timed(std::vector<Row<T>> times) {
+  std::vector<Row<T>> rows =
+      monitor::state_keys<T>([](const T& object) { return std::pair(object.state, object.reason); });
+  add_rows(rows, std::move(times));
+  return rows;
+}
+
+const Schema<Stay>& stay_table() {
+  static const Schema<Stay> table(
+      "stay", "a stay in one state",
+      timed<Stay>({key("from_s", &Stay::from_s, "its begin"), key("to_s", &Stay::to_s, "its end")}), Use::written);
+  return table;
+}
+
+const Schema<StateTime>& state_time_table() {
+  static const Schema<StateTime> table(
+      "state_time", "how long the run was in a state",
+      timed<StateTime>({key("duration_s", &StateTime::duration_s,
+                            "of no-signal with the time by the clock in which no samples came")}),
+      Use::written);
+  return table;
+}
+
+const Schema<RecordedAlarm>& alarm_table() {
+  using Alarm = RecordedAlarm;
+  static const Schema<Alarm> table(
+      "recorded_alarm", "alarms of about one frequency that follow each other",
+      [] {
+        std::vector<Row<Alarm>> rows = {
+            key("count", &Alarm::count, "alarms"),
+            key("from_s", &Alarm::from_s, "first begin"),
+            key("to_s", &Alarm::to_s, "last end"),
+            key("chatter_s", &Alarm::chatter_s, "in chatter between them"),
+            key("low_frequency_hz", &Alarm::low_frequency_hz, "lowest decided").nullable(),
+            key("high_frequency_hz", &Alarm::high_frequency_hz, "highest decided").nullable(),
+            key("chatter_frequency_hz", &Alarm::chatter_frequency_hz, "the surest of them").nullable(),
+            key("chatter_frequency_std_hz", &Alarm::chatter_frequency_std_hz, "its standard deviation").nullable(),
+            key("channel", &Alarm::channel, "in which it was strongest then").nullable(),
+            monitor::hidden_key<Alarm>([](const Alarm& alarm) { return alarm.synchronous; }),
+            key(
+                "suggested_spindle_speed_rpm",
+                [](const Alarm& alarm) { return if_positive(alarm.suggested_spindle_speed_rad_per_s); },
+                "that avoids chatter")
+                .nullable(),
+            key("line_frequencies_hz", &Alarm::line_hz, "what a line that was measured folded may be").exact(),
+            key("no_speed", &Alarm::no_speed, monitor::no_speed_names, "why no speed is suggested").nullable()};
+        add_rows(rows, modal::mode_keys<Alarm>("that chatters"));
+        return rows;
+      }(),
+      Use::written);
+  return table;
+}
+
+/// Lines of events, written before.
+Row<RecordedRun> event_key() {
+  Row<RecordedRun> row = key(
+      "events", [](const RecordedRun&) { return std::vector<monitor::MonitorEvent>(); }, monitor::event_table(),
+      "as in events.jsonl, 400 at most");
+  row.write = [](const RecordedRun& run, const Row<RecordedRun>&) {
+    Json events = Json::array();
+    for (const std::string& event : run.events) {
+      events.push_back(Json::parse(event, nullptr, false));
+      if (events.back().is_discarded()) throw InvalidInput("events", "must be lines of JSON");
+    }
+    return events;
+  };
+  return row;
 }
 
 }  // namespace
 
+const Schema<RecordedRun>& recorded_run_table() {
+  using Run = RecordedRun;
+  static const Schema<Run> table(
+      "monitor", "a recording as the chatter monitor processed it",
+      {key(
+           "facts",
+           [](const Run& run) {
+             std::vector<Fact> out;
+             for (const auto& [label, value] : run.facts) out.push_back({label, value});
+             return out;
+           },
+           fact_table(), "in words"),
+       key("warnings", &Run::warnings, "sentences for the user"), key("notes", &Run::notes, "sentences for the user"),
+       key("unit", &Run::unit, "of the samples, where the names of all channels end in one"),
+       key("wave_run_s", &Run::wave_run_s, "of one run of the samples"),
+       key("channels", &Run::channels, channel_table(), "over equal runs of time"),
+       key(
+           "spectrogram",
+           [](const Run& run) { return run.spectrogram.level_db.size() == 0 ? nullptr : &run.spectrogram; },
+           spectrogram_table(), "none: no signal")
+           .nullable(),
+       key(
+           "decisions", [](const Run& run) { return &run; }, decisions_table(), "over equal runs of time"),
+       key("decision_count", &Run::decisions, "decisions"),
+       key("compute_mean_us", &Run::compute_mean_s, "of one decision").nullable(),
+       key("compute_max_us", &Run::compute_max_s, "of one decision").nullable(),
+       key(
+           "teeth", [](const Run& run) { return run.teeth > 0 ? std::optional(run.teeth) : std::nullopt; },
+           "of the cutter; none: not known")
+           .nullable(),
+       key("stays", &Run::stays, stay_table(), "one after the other, 2,000 at most"),
+       key("state_times", &Run::state_times, state_time_table(), "all stays together, also those that are not listed"),
+       key("alarm_count", &Run::alarm_count, "alarms"),
+       key("alarms", &Run::alarms, alarm_table(), "consecutive ones of one frequency in one row, 100 at most"),
+       event_key()},
+      Use::written, 1);
+  return table;
+}
+
 std::string recorded_run_json(const RecordedRun& run) {
-  Json facts = Json::array();
-  for (const auto& [label, value] : run.facts) facts.push_back({{"label", label}, {"value", value}});
-  Json channels = Json::array();
-  for (const RecordedChannel& channel : run.channels) {
-    channels.push_back({{"name", channel.name}, {"wave", band_json(channel.wave)}});
-  }
-  Json stays = Json::array();
-  for (const Stay& stay : run.stays) {
-    stays.push_back(state_json(stay.state, stay.reason));
-    stays.back()["from_s"] = number(stay.from_s);
-    stays.back()["to_s"] = number(stay.to_s);
-  }
-  Json state_times = Json::array();
-  for (const StateTime& time : run.state_times) {
-    state_times.push_back(state_json(time.state, time.reason));
-    state_times.back()["duration_s"] = number(time.duration_s);
-  }
-  Json alarms = Json::array();
-  for (const RecordedAlarm& alarm : run.alarms) alarms.push_back(alarm_json(alarm));
-  Json events = Json::array();
-  for (const std::string& event : run.events) {
-    events.push_back(Json::parse(event, nullptr, false));
-    if (events.back().is_discarded()) throw InvalidInput("events", "must be lines of JSON");
-  }
-  return io::dump({{"facts", std::move(facts)},
-                   {"warnings", run.warnings},
-                   {"notes", run.notes},
-                   {"unit", run.unit},
-                   {"wave_run_s", number(run.wave_run_s)},
-                   {"channels", std::move(channels)},
-                   {"spectrogram", spectrogram_json(run.spectrogram)},
-                   {"decisions", decisions_json(run)},
-                   {"decision_count", run.decisions},
-                   {"compute_mean_us", number(run.compute_mean_s / units::us)},
-                   {"compute_max_us", number(run.compute_max_s / units::us)},
-                   {"teeth", run.teeth > 0 ? Json(run.teeth) : Json(nullptr)},
-                   {"stays", std::move(stays)},
-                   {"state_times", std::move(state_times)},
-                   {"alarm_count", run.alarm_count},
-                   {"alarms", std::move(alarms)},
-                   {"events", std::move(events)}});
+  return io::dump(recorded_run_table().write(run));
 }
 
 }  // namespace robomill::live

@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/modal/files/mode_json.hpp"
+#include "robomill/modal/files/mode_schema.hpp"
+#include "robomill/monitor/files/event_schema.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -14,8 +17,98 @@ namespace {
 constexpr std::array<Fault, 6> all_faults = {not_finite,        stuck,        clipped, dead_channel,
                                              wrong_sample_rate, speed_unknown};
 
-io::Json text_or_null(const std::string& text) {
-  return text.empty() ? io::Json(nullptr) : io::Json(text);
+using io::add_rows;
+using io::if_positive;
+using io::key;
+using io::of;
+using io::Row;
+
+/// A number of the last decision.
+Row<MonitorEvent> of_decision(std::string name, double Decision::*member, std::string meaning) {
+  return of(&MonitorEvent::decision, key(std::move(name), member, std::move(meaning)).nullable());
+}
+
+/// The same of one that is > 0.
+template <class F>
+Row<MonitorEvent> positive(std::string name, F value, std::string meaning) {
+  return key(
+             std::move(name), [value](const MonitorEvent& event) { return if_positive(value(event)); },
+             std::move(meaning))
+      .nullable();
+}
+
+bool chatters(const MonitorEvent& event) {
+  return event.decision.chatter_frequency_hz > 0.0;
+}
+
+template <class Value>
+std::optional<Value> if_chatters(const MonitorEvent& event, Value value) {
+  return chatters(event) ? std::optional(value) : std::nullopt;
+}
+
+std::vector<Row<MonitorEvent>> chatter_keys() {
+  using Event = MonitorEvent;
+  std::vector<Row<Event>> rows = {
+      positive(
+          "chatter_frequency_hz", [](const Event& e) { return e.decision.chatter_frequency_hz; }, "none: no chatter"),
+      key(
+          "chatter_frequency_std_hz",
+          [](const Event& e) { return if_chatters(e, e.decision.chatter_frequency_std_hz); }, "standard deviation")
+          .nullable(),
+      key(
+          "channel", [](const Event& e) { return if_chatters(e, e.decision.channel + 1); },
+          "in which it is strongest, from 1")
+          .nullable(),
+      hidden_key<Event>([](const Event& e) { return e.decision.synchronous; })};
+  add_rows(rows, modal::mode_keys<Event>("that chatters"));
+  rows.push_back(key("line_frequencies_hz", &Event::line_hz, "what a line that was measured folded may be"));
+  return rows;
+}
+
+std::vector<Row<MonitorEvent>> advice_keys() {
+  using Event = MonitorEvent;
+  return {
+      positive(
+          "spindle_speed_rpm", [](const Event& e) { return e.decision.spindle_speed_rad_per_s; },
+          "tracked; none: not known"),
+      positive(
+          "spindle_speed_std_rpm", [](const Event& e) { return e.decision.spindle_speed_std_rad_per_s; },
+          "its standard deviation"),
+      positive(
+          "suggested_spindle_speed_rpm", [](const Event& e) { return e.suggested_spindle_speed_rad_per_s; },
+          "that avoids chatter"),
+      positive(
+          "suggested_axial_depth_mm", [](const Event& e) { return e.suggested_axial_depth_m; }, "that avoids chatter"),
+      key("depth_limited_by", &Event::depth_limited_by, depth_limited_by_names, "none: no depth is suggested")
+          .nullable(),
+      key("stable_spindle_speeds_rpm", &Event::stable_speeds_rad_per_s, "at which the present depth is stable"),
+      key("no_speed", &Event::no_speed, no_speed_names, "why no speed is suggested").nullable(),
+      key("command", &Event::command, "that followed by a rule of [act]")
+          .words({"spindle-speed", "feed", "hold", "release", "none"})
+          .nullable(),
+      key(
+          "faults", [](const Event& e) { return fault_names(e.decision.faults); }, "of the input")
+          .words(words_of(all_faults)),
+      key(
+          "suggested_sample_rate_hz",
+          [](const Event& e) {
+            return (e.decision.faults & wrong_sample_rate) != 0 ? if_positive(e.decision.suggested_sample_rate_hz)
+                                                                : std::nullopt;
+          },
+          "where the sample rate is wrong")
+          .nullable(),
+      key("compute_us", &Event::compute_s, "of the decision").nullable()};
+}
+
+/// What events of one kind alone have.
+std::vector<Row<MonitorEvent>> own_keys() {
+  using Event = MonitorEvent;
+  const auto is = [](Event::Kind kind) { return [kind](const Event& event) { return event.kind == kind; }; };
+  return {
+      where(is(Event::Kind::stream), key("what", &Event::what, "befell the samples").nullable()),
+      where(is(Event::Kind::stream), key("count", &Event::count, "how often")),
+      where(is(Event::Kind::recording), key("file", &Event::file, "that was written").nullable()),
+      where([](const Event& event) { return !event.message.empty(); }, key("message", &Event::message, "for people"))};
 }
 
 /// Of names of files whatever their bytes.
@@ -25,19 +118,8 @@ std::string line_of(const io::Json& json) {
 
 }  // namespace
 
-const char* to_string(MonitorEvent::Kind kind) {
-  switch (kind) {
-    case MonitorEvent::Kind::state:
-      return "state";
-    case MonitorEvent::Kind::window:
-      return "window";
-    case MonitorEvent::Kind::fault:
-      return "fault";
-    case MonitorEvent::Kind::stream:
-      return "stream";
-    default:
-      return "recording";
-  }
+std::string_view to_string(MonitorEvent::Kind kind) {
+  return name_in(event_kind_names, kind);
 }
 
 std::vector<std::string> fault_names(std::uint32_t faults) {
@@ -57,47 +139,30 @@ std::string line_text(const std::vector<double>& line_hz) {
   return out + (line_hz.size() == 1 ? " Hz folded" : " Hz");
 }
 
+const io::Schema<MonitorEvent>& event_table() {
+  using Event = MonitorEvent;
+  static const io::Schema<Event> table(
+      "monitor_event", "what the monitor reports",
+      [] {
+        std::vector<Row<Event>> rows = {key("time_s", &Event::time_s, "of the stream").nullable(),
+                                        key("event", &Event::kind, event_kind_names, "what changed")};
+        add_rows(rows, state_keys<Event>(
+                           [](const Event& event) { return std::pair(event.decision.state, event.decision.reason); }));
+        add_rows(rows, {of_decision("score", &Decision::score, "of the detector"),
+                        of_decision("threshold", &Decision::threshold, "of the score"),
+                        of_decision("energy_entropy", &Decision::energy_entropy, "of the spectrum"),
+                        of_decision("level", &Decision::level, "of the signal")});
+        add_rows(rows, chatter_keys());
+        add_rows(rows, advice_keys());
+        add_rows(rows, own_keys());
+        return rows;
+      }(),
+      io::Use::written);
+  return table;
+}
+
 std::string event_line(const MonitorEvent& event) {
-  const Decision& d = event.decision;
-  const bool chatters = d.chatter_frequency_hz > 0.0;
-  io::Json json;
-  json["time_s"] = io::number(event.time_s);
-  json["event"] = to_string(event.kind);
-  json["state"] = to_string(d.state);
-  json["reason"] = d.state == State::blind ? io::Json(to_string(d.reason)) : io::Json(nullptr);
-  json["score"] = io::number(d.score);
-  json["threshold"] = io::number(d.threshold);
-  json["energy_entropy"] = io::number(d.energy_entropy);
-  json["level"] = io::number(d.level);
-  json["chatter_frequency_hz"] = io::positive(d.chatter_frequency_hz);
-  json["chatter_frequency_std_hz"] = chatters ? io::number(d.chatter_frequency_std_hz) : io::Json(nullptr);
-  json["channel"] = chatters ? io::Json(d.channel + 1) : io::Json(nullptr);
-  json["hidden"] = d.synchronous == SynchronousChatter::none ? io::Json(nullptr) : io::Json(to_string(d.synchronous));
-  modal::set_mode(json, event.mode);
-  json["line_frequencies_hz"] = io::Json::array();
-  for (const double line_hz : event.line_hz) json["line_frequencies_hz"].push_back(io::number(line_hz));
-  json["spindle_speed_rpm"] = io::positive(d.spindle_speed_rad_per_s, units::rpm);
-  json["spindle_speed_std_rpm"] = io::positive(d.spindle_speed_std_rad_per_s, units::rpm);
-  json["suggested_spindle_speed_rpm"] = io::positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
-  json["suggested_axial_depth_mm"] = io::positive(event.suggested_axial_depth_m, units::mm);
-  json["depth_limited_by"] = text_or_null(std::string(name_in(depth_limited_by_names, event.depth_limited_by)));
-  json["stable_spindle_speeds_rpm"] = io::Json::array();
-  for (const double speed : event.stable_speeds_rad_per_s) {
-    json["stable_spindle_speeds_rpm"].push_back(io::number(speed / units::rpm));
-  }
-  json["no_speed"] = text_or_null(std::string(name_in(no_speed_names, event.no_speed)));
-  json["command"] = text_or_null(event.command);
-  json["faults"] = fault_names(d.faults);
-  json["suggested_sample_rate_hz"] =
-      (d.faults & wrong_sample_rate) != 0 ? io::positive(d.suggested_sample_rate_hz) : io::Json(nullptr);
-  json["compute_us"] = io::number(event.compute_s / units::us);
-  if (event.kind == MonitorEvent::Kind::stream) {
-    json["what"] = text_or_null(event.what);
-    json["count"] = event.count;
-  }
-  if (event.kind == MonitorEvent::Kind::recording) json["file"] = text_or_null(event.file);
-  if (!event.message.empty()) json["message"] = event.message;
-  return line_of(json);
+  return line_of(event_table().write(event));
 }
 
 std::string started_line(const SessionStart& start) {

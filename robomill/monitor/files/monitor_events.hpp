@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -62,7 +63,12 @@ struct MonitorEvent {
   std::string file = {};     ///< of recordings
 };
 
-[[nodiscard]] ROBOMILL_API const char* to_string(MonitorEvent::Kind kind);
+inline constexpr Name<MonitorEvent::Kind> event_kind_names[] = {{"state", MonitorEvent::Kind::state},
+                                                                {"window", MonitorEvent::Kind::window},
+                                                                {"fault", MonitorEvent::Kind::fault},
+                                                                {"stream", MonitorEvent::Kind::stream},
+                                                                {"recording", MonitorEvent::Kind::recording}};
+[[nodiscard]] ROBOMILL_API std::string_view to_string(MonitorEvent::Kind kind);
 
 /// One line of JSON with its end. What is not known is null; numbers are finite.
 [[nodiscard]] ROBOMILL_API std::string event_line(const MonitorEvent& event);

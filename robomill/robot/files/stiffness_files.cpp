@@ -104,10 +104,12 @@ const Schema<View>& stiffness_table() {
                    for (const Load& load : view.loads->loads) out.emplace_back(load.displacement_m);
                    return out;
                  },
-                 "measured, of each load"),
+                 "measured, of each load")
+                 .entries(3),
              key(
                  "residual_mm", [](const View& view) { return Eigen::MatrixXd(view.found->residual_m.transpose()); },
                  "measured less model, of each load")
+                 .entries(3)
                  .nullable(),
              key("rms_mm", found(&IdentifiedStiffness::rms_m), "of the residuals").nullable(),
              key("r_squared", found(&IdentifiedStiffness::r_squared), "share of the displacements that is explained")

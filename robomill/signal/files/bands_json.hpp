@@ -1,8 +1,30 @@
 #pragma once
-#include "robomill/io/json.hpp"
+#include <string>
+#include <utility>
+
+#include "robomill/io/schema.hpp"
 #include "robomill/signal/bands.hpp"
 
 namespace robomill::signal {
+
+/// A band in a shop unit.
+struct BandView {
+  const Band* band = nullptr;
+  double unit = 1.0;
+};
+[[nodiscard]] const io::Schema<BandView>& band_table();
+
+/// A key that holds a band in the unit of its name.
+template <class T>
+[[nodiscard]] io::Row<T> band_key(std::string name, Band T::*member, std::string meaning) {
+  const double unit = io::key_unit(name).factor;
+  return io::key(
+      std::move(name),
+      [member, unit](const T& object) {
+        return BandView{&(object.*member), unit};
+      },
+      band_table(), std::move(meaning));
+}
 
 /// {"low": […], "high": […]} in a shop unit.
 [[nodiscard]] io::Json band_json(const Band& band, double unit = 1.0);

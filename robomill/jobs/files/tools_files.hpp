@@ -1,0 +1,18 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "robomill/io/schema.hpp"
+#include "robomill/jobs/tools.hpp"
+
+namespace robomill::jobs {
+
+/// Rows of a list of tools and the holder that was measured for them.
+struct ToolsView {
+  const std::vector<ToolResult>* tools = nullptr;
+  const std::optional<coupling::HolderResult>* holder = nullptr;
+};
+/// The table of a list of tools as JSON.
+[[nodiscard]] const io::Schema<ToolsView>& tools_table();
+
+}  // namespace robomill::jobs
