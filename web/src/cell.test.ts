@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
-import type { CellDocument, CellFigure, CellPosture, Vector } from './cell_document';
+import type { CellDocument, CellFigure, CellMiss, CellPosture, Vector } from './documents';
 import { cellFacts, gammaText, limitText, nearestText, placeOf, vectorText } from './cell_views';
+import { sampleReport } from './report_sample';
 import { axesOf, layOutCell, viewWidth } from './figures/cell_layout';
 
 const up: CellFigure = {
@@ -24,8 +25,11 @@ const posture: CellPosture = {
   condition_number: 14.2,
 };
 
+const sample = sampleReport().cell!;
+
 function cell(change: Partial<CellDocument> = {}): CellDocument {
   return {
+    document: 'check/1',
     cell: 'cell.toml',
     robot: { kind: 'serial', model: null, description: 'An arm', source: null },
     joints: [],
@@ -93,10 +97,10 @@ describe('the picture of a cell', () => {
   });
   it('marks what cannot be reached and where the workpiece could go', () => {
     const base = cell();
-    const miss = { block: 3, line: 7, base_tip_mm: [5000, 0, 0] as Vector, state: 'out of reach' as const, text: 'out of reach by 2 m' };
+    const miss: CellMiss = { ...sample.placement.misses[0]!, base_tip_mm: [5000, 0, 0] };
     const failing = cell({
       placement: { ...base.placement, works: false, program: 'part.ngc', poses: 9, missed: 1, misses: [miss] },
-      proposals: [{ origin_mm: [1400, 0, 700], rotation_deg: [0, 0, 0], shift_mm: [-300, 0, 0], turn_deg: 0, margin: 0.2, gamma_deg: [0, 0] }],
+      proposals: [{ ...sample.proposals[0]!, origin_mm: [1400, 0, 700], rotation_deg: [0, 0, 0] }],
     });
     const { views, words } = layOutCell(failing);
     expect(views.map(({ misses }) => misses.length)).toEqual([1, 1]);
@@ -122,7 +126,7 @@ describe('the words of a cell', () => {
     expect(nearestText({ ...posture, nearest_joint: null }, '°')).toBe('no limits');
   });
   it('name places and turns', () => {
-    const miss = { block: 0, line: null, base_tip_mm: [0, 0, 0] as Vector, state: 'singular' as const, text: '' };
+    const miss = { block: 0, line: null };
     expect(placeOf(miss, null)).toBe("workpiece's origin");
     expect(placeOf(miss, 'part.ngc')).toBe("program's start");
     expect(placeOf({ ...miss, block: 12, line: 40 }, 'part.ngc')).toBe('block 12 (line 40)');

@@ -1,6 +1,5 @@
 // What tables of a cell need, made of check.json.
-import type { CellDocument, CellJoint, CellMiss, CellPosture, Vector } from './cell_document';
-import type { Fact, Num } from './documents';
+import type { CellDocument, CellJoint, CellMiss, CellPosture, Fact, Num, Vector } from './documents';
 import { dash, fixed, general, significant } from './text';
 
 /** Joints are in degrees, or in millimetres where they slide. */
@@ -20,7 +19,7 @@ export function limitText(joint: CellJoint, key: 'min_position' | 'max_position'
 }
 
 /** "origin of the workpiece", "block 12 (line 40)". */
-export function placeOf({ block, line }: CellMiss, program: string | null): string {
+export function placeOf({ block, line }: Pick<CellMiss, 'block' | 'line'>, program: string | null): string {
   if (program === null) return "workpiece's origin";
   return block === 0 ? "program's start" : `block ${block}${line === null ? '' : ` (line ${line})`}`;
 }

@@ -1,8 +1,7 @@
 // What the section of a decision needs, made of plan.json's "decision".
-import type { Decision, GammaMap, Outcome, Stretch, Violation } from './decision';
-import type { Fact, Num } from './documents';
+import type { Decision, Fact, GammaMap, Num, Outcome, Stretch, Violation } from './documents';
 import { thinSpace } from './figures/theme';
-import { dash, fixed, percent, significant } from './text';
+import { capital, dash, fixed, percent, significant } from './text';
 import { valueAt } from './views';
 
 export const unknown = 'not known';
@@ -11,7 +10,7 @@ export const unknown = 'not known';
 export interface Measure {
   name: string;
   unit: string;
-  limit?: string;
+  limit?: Violation['limit'];
   chatters?: (outcome: Outcome) => boolean; // it says that some block is unstable
   text: (outcome: Outcome) => string;
 }
@@ -45,8 +44,7 @@ export function cuttingTimeText({ cutting_time_s: value }: Outcome): string {
 
 /** The robot's time for the program where there is a trajectory of it, else that of the feeds. */
 export function decidedTime(before: Outcome, decided: Outcome): { label: string; before: Num; decided: Num } {
-  const { robot_time_s: robot = null } = decided;
-  if (robot !== null) return { label: 'Robot’s time', before: before.robot_time_s ?? null, decided: robot };
+  if (decided.robot_time_s !== null) return { label: 'Robot’s time', before: before.robot_time_s, decided: decided.robot_time_s };
   return { label: 'Cutting time at the feeds', before: before.cutting_time_s, decided: decided.cutting_time_s };
 }
 
@@ -62,16 +60,16 @@ export const limited: Measure[] = [
   { name: 'Sustained power', unit: 'W', limit: 'power', text: (outcome) => said(outcome.sustained_power_w) },
   { name: 'Peak deflection', unit: 'µm', limit: 'deflection', text: (outcome) => said(outcome.peak_deflection_um) },
   { name: 'Surface error', unit: 'µm', limit: 'surface_error', text: (outcome) => said(outcome.worst_surface_error_um) },
-  { name: 'Forced vibration, amplitude about the mean', unit: 'µm', limit: 'forced_vibration', text: (outcome) => said(outcome.peak_vibration_um ?? null) },
+  { name: 'Forced vibration, amplitude about the mean', unit: 'µm', limit: 'forced_vibration', text: (outcome) => said(outcome.peak_vibration_um) },
 ];
 
 export const measures: Measure[] = [
-  { name: 'Robot’s time, whole program', unit: 's', text: (outcome) => said(outcome.robot_time_s ?? null, time) },
+  { name: 'Robot’s time, whole program', unit: 's', text: (outcome) => said(outcome.robot_time_s, time) },
   { name: 'Cutting time at the feeds', unit: 's', text: cuttingTimeText },
   { name: 'Time at the feeds, without rapids', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
   { name: 'Spindle speed', unit: 'rpm', text: speedText },
   { name: 'Unstable blocks', unit: '', chatters: ({ unstable_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.unstable_blocks, whole) },
-  { name: 'Blocks that may chatter, within the uncertainty', unit: '', chatters: ({ uncertain_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.uncertain_blocks ?? null, whole) },
+  { name: 'Blocks that may chatter, within the uncertainty', unit: '', chatters: ({ uncertain_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.uncertain_blocks, whole) },
   ...limited,
 ];
 
@@ -82,7 +80,7 @@ export function withUnit(text: string, unit: string): string {
 /** The violation of a measure's limit; null where it stays within. */
 export function violationOf(outcome: Outcome, { limit }: Measure): Violation | null {
   if (limit === undefined) return null;
-  return outcome.violations.find((violation) => violation.limit.replace(/^spindle_/, '') === limit) ?? null;
+  return outcome.violations.find((violation) => violation.limit === limit) ?? null;
 }
 
 /** Stability is violated as a spectral radius, of which 1 is allowed, or as a margin, of which less than 1 is asked for. */
@@ -110,18 +108,17 @@ export function beyondText(violation: Violation): string {
 export function limitName(violation: Violation): string {
   const { limit } = violation;
   if (limit === 'stability') return isRadius(violation) ? 'Stability, |μ|' : 'Stability margin';
-  const words = limit.replace(/_/g, ' ');
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  return capital(limit.replace(/_/g, ' '));
 }
 
 /** How the tool leans in a stretch from where the program has it: lead and tilt; empty: as there. */
-export function leanText({ lead_deg: lead, tilt_deg: tilt }: Stretch): string {
-  return lead || tilt ? `${fixed(lead ?? 0, 1)}°, ${fixed(tilt ?? 0, 1)}°` : '';
+export function leanText({ lead_deg: lead, tilt_deg: tilt }: Pick<Stretch, 'lead_deg' | 'tilt_deg'>): string {
+  return lead || tilt ? `${fixed(lead, 1)}°, ${fixed(tilt, 1)}°` : '';
 }
 
 /** From the lowest to the highest feed of all stretches. */
-export function feedText({ stretches }: Decision): string {
-  const feeds = stretches.flatMap(({ lowest_feed_mm_per_min: low, highest_feed_mm_per_min: high }) => [low, high]).filter((feed): feed is number => feed !== null);
+export function feedText(stretches: Stretch[]): string {
+  const feeds = stretches.flatMap(({ lowest_feed_mm_per_min: low, highest_feed_mm_per_min: high }) => [low, high]);
   return feeds.length === 0 ? unknown : rangeText(Math.min(...feeds), Math.max(...feeds), significant);
 }
 
@@ -134,41 +131,29 @@ export function savedText(programmed: Num, decided: Num): string {
   return `${percent(Math.abs(share), 0)} ${share < 0 ? 'less' : 'more'} than the ${before} programmed`;
 }
 
-function counted(count: number, one: string, many: string): string {
-  return `${fixed(count, 0)} ${count === 1 ? one : many}`;
+function counted(count: number, one: string): string {
+  return `${fixed(count, 0)} ${one}${count === 1 ? '' : 's'}`;
 }
 
-function changesText(changes: Decision['changes']): string {
-  if (changes === null) return '';
-  const { lines, speeds, feeds } = changes;
-  const said: string[] = [];
-  if (lines !== null) said.push(counted(lines, 'line', 'lines'));
-  if (speeds !== null) said.push(counted(speeds, 'spindle speed', 'spindle speeds'));
-  if (feeds !== null) said.push(counted(feeds, 'feed', 'feeds'));
-  return said.join(', ');
+function changesText({ lines, speeds, feeds }: Decision['changes']): string {
+  return [...(lines === null ? [] : [counted(lines, 'line')]), counted(speeds, 'spindle speed'), counted(feeds, 'feed')].join(', ');
 }
 
 function goalText({ goal, decided }: Decision): string {
   if (goal === 'removal_rate') return 'highest removal rate';
-  if (goal !== 'time') return goal;
   return (decided?.robot_time_s ?? null) === null ? 'shortest cutting time at the feeds' : 'shortest time of the robot';
 }
-const freedoms: Record<string, string> = { spindle_speed: 'spindle speed', feed: 'feed', gamma: 'γ', axial_depth: 'axial depth', lead: 'lead', tilt: 'tilt' };
+const freedoms: Record<Decision['free'][number], string> = { spindle_speed: 'spindle speed', feed: 'feed', gamma: 'γ', axial_depth: 'axial depth', lead: 'lead', tilt: 'tilt' };
 
 export function decisionFacts(decision: Decision): Fact[] {
   const { free, changes, collisions_checked, evaluations, exact_runs, seconds } = decision;
-  const facts: Fact[] = [
+  return [
     { label: 'Goal', value: goalText(decision) },
-    { label: 'Free to choose', value: free.map((name) => freedoms[name] ?? name).join(', ') || 'nothing' },
+    { label: 'Free to choose', value: free.map((name) => freedoms[name]).join(', ') || 'nothing' },
     { label: 'Collisions', value: collisions_checked ? 'checked' : 'not checked' },
+    { label: 'Changed in the program', value: changesText(changes) },
+    { label: 'Evaluations', value: `${fixed(evaluations, 0)}, ${counted(exact_runs, 'exact run')} in ${withUnit(significant(seconds), 's')}` },
   ];
-  const changed = changesText(changes);
-  if (changed !== '') facts.push({ label: 'Changed in the program', value: changed });
-  if (evaluations !== null) {
-    const exact = exact_runs === null ? '' : `, ${counted(exact_runs, 'exact run', 'exact runs')}`;
-    facts.push({ label: 'Evaluations', value: `${fixed(evaluations, 0)}${exact}${seconds === null ? '' : ` in ${withUnit(significant(seconds), 's')}`}` });
-  }
-  return facts;
 }
 
 /** What to do before the program is run as decided. */
@@ -204,15 +189,12 @@ export function nearest(values: number[], to: number): number {
 export function columnFacts(map: GammaMap, index: number): Fact[] {
   const known = column(map, index).flatMap((margin, row) => (margin === null ? [] : [{ margin, gamma: map.gamma_deg[row]! }]));
   const best = known.length === 0 ? null : known.reduce((a, b) => (b.margin > a.margin ? b : a));
-  const at = (gamma: Num) => `${significant(gamma)}°, margin ${significant(marginAt(map, index, gamma))}`;
-  const chosen = map.chosen_deg[index] ?? null;
-  const programmed = map.programmed_deg[index] ?? null;
-  const facts: Fact[] = [
+  const at = (gamma: number) => `${significant(gamma)}°, margin ${significant(marginAt(map, index, gamma))}`;
+  return [
     { label: 'Block', value: fixed(map.block[index]!, 0) },
     { label: 'Along the path', value: withUnit(fixed(map.path_mm[index]!, 1), 'mm') },
+    { label: 'γ as programmed', value: at(map.programmed_deg[index]!) },
+    { label: 'γ as chosen', value: at(map.chosen_deg[index]!) },
+    { label: 'Highest margin', value: best === null ? 'the robot cannot stand here' : `${significant(best.margin)} at ${significant(best.gamma)}°` },
   ];
-  if (programmed !== null) facts.push({ label: 'γ as programmed', value: at(programmed) });
-  if (chosen !== null) facts.push({ label: 'γ as chosen', value: at(chosen) });
-  facts.push({ label: 'Highest margin', value: best === null ? 'the robot cannot stand here' : `${significant(best.margin)} at ${significant(best.gamma)}°` });
-  return facts;
 }

@@ -1,333 +1,162 @@
-// What robomill writes into the page: shop units, null for "none". Types of documents with a schema come from it.
-import type { ComparisonDocument } from '#schema/comparison';
-import type { LobesDocument } from '#schema/lobes';
-import type { SweepDocument } from '#schema/sweep';
-import type { CellDocument } from './cell_document';
-import type { Decision } from './decision';
-import type { Fact, Num, Owner, Remarks } from './parts_of_documents';
-import type { BlocksDocument, Program, SmoothDocument } from './program_documents';
-import type { Monitor, MotionDocument } from './recorded';
-import type {
-  Assumption,
-  CoefficientsDocument,
-  ExplanationDocument,
-  JointDocument,
-  SimulationDocument,
-  StiffnessDocument,
-  ToolsDocument,
-  VibrationDocument,
-} from './verb_documents';
+// What robomill writes into the page: documents, whose types come from their schemas, and what is recorded for the page alone.
+import type { Documents } from '#schema/documents';
+import type { MotionDocument, Recording, VibrationDocument } from './recorded';
 
-export * from './parts_of_documents';
-export * from './program_documents';
-export * from './recorded';
-export * from './verb_documents';
-export type { ComparisonDocument, LobesDocument, SweepDocument };
+export type * from './parts_of_documents';
+export type * from './recorded';
 
-export type Verdict = 'stable' | 'borderline' | 'chatter';
+/** The parts of a report that are documents, and which. */
+export const members = {
+  plan: 'plan', // without the documents of its stages
+  frf: 'frf', // measured, or predicted where there is an assembly
+  fitted: 'frf',
+  measured: 'frf', // beside predicted ones
+  assembly: 'assembly',
+  modes: 'modes',
+  workpiece_modes: 'modes',
+  lobes: 'lobes',
+  forces: 'forces',
+  blocks: 'blocks',
+  smooth: 'smooth',
+  cell: 'check',
+  monitor: 'monitor',
+  calibration: 'calibration',
+  joint: 'joint', // found with the FRFs above
+  tools: 'tools',
+  sweep: 'sweep',
+  comparison: 'comparison',
+  explanation: 'explain',
+  simulation: 'simulation',
+  coefficients: 'coefficients',
+  stiffness: 'stiffness',
+} as const;
+
+/** What was taken because nobody said it; key and file are null where nothing can be set. */
+export type Assumption = Documents['forces']['assumed'][number];
+
+// Lobes and the plan
+export type LobesDocument = Documents['lobes'];
+export type SweepDocument = Documents['sweep'];
+export type ComparisonDocument = Documents['comparison'];
 /** The limit at one speed. */
 export type LimitRow = LobesDocument['limit'][number];
 export type LobesPoint = LobesDocument['points'][number];
 /** A point that was asked for; in a sweep the parameter's value is there in place of the depth. */
 export type ChartPoint = SweepDocument['points'][number] & Partial<Pick<LobesPoint, 'axial_depth_mm'>>;
-/** Of the tip about its mean position. */
-export interface ForcedVibration {
-  amplitude_um: Num;
-  harmonic: number;
-  of: 'tooth passing' | 'rotation';
-  frequency_hz: Num;
-  harmonic_um: Num;
-  mode: Num;
-  mode_of: Owner | null;
-}
+export type Plan = Documents['plan'];
+export type Recommendation = NonNullable<Plan['recommended']>;
+export type Finishing = Plan['finishing'];
+export type Agreement = Plan['agreement'];
+export type PartLimits = Plan['pairs'][number];
+export type DepthCurve = Plan['other_limits'][number];
+export type Cut = Plan['cuts'][number];
+export type Verdict = NonNullable<Cut['result']>;
 
-export interface Recommendation {
-  spindle_speed_rpm: number;
-  axial_depth_mm: number;
-  feed_per_tooth_mm: Num;
-  margin: Num;
-  removal_rate_mm3_per_s: Num;
-  feed_mm_per_min: Num;
-  cutting_speed_m_per_min: Num;
-  torque_n_m: Num;
-  power_w: Num;
-  surface_error_um: Num;
-  peak_deflection_um: Num;
-  forced_vibration: ForcedVibration | null; // null: not computed
-  limited_by: string;
-  window_chatter_frequency_hz: Num;
-  mode: Num;
-  mode_of: Owner | null;
-}
+// The decision on a program
+export type Decision = NonNullable<Plan['decision']>;
+export type Outcome = Decision['as_programmed'];
+/** A limit that a program violates, in the block where it is worst. */
+export type Violation = Outcome['violations'][number];
+/** A spindle speed that was not chosen. */
+export type OtherSpeed = Decision['alternatives'][number];
+/** Blocks that follow each other at one spindle speed. */
+export type Stretch = Decision['stretches'][number];
+/** Stability margin over the place along the path and the turn γ: a row a γ; null: the robot cannot stand there. */
+export type GammaMap = NonNullable<Decision['gamma_map']>;
 
-/** What a finishing cut permits. */
-export interface Finishing {
-  max_surface_error_um: Num;
-  max_deflection_um: Num;
-}
-
-/** How well an FRF was measured. */
-export interface FrfGrade {
-  grade: 'good' | 'usable' | 'poor';
-  excited_band_hz: [Num, Num];
-  lowest_trustworthy_frequency_hz: Num;
-  faults: string[];
-  remedies: string[];
-}
-
-/** tip.json: FRFs by name over one axis; hits and grades where they were measured here. */
-export interface FrfDocument {
-  frequency_hz: number[];
-  receptance_m_per_n: Record<string, { re: Num[]; im: Num[] }>; // SI, also of rotations and moments
-  coherence: Record<string, Num[]>;
-  hits?: { file: string; accepted: boolean; reasons: string[] }[];
-  grades?: Record<string, FrfGrade>;
-}
-
+// The structure
+export type FrfDocument = Shown['frf'];
+export type ModesDocument = Documents['modes'];
 /** A complex number by degree of freedom. */
-export type ModeVector = Record<string, [number, number]>;
-
-/** modes.json; fit and what follows only of modes that were fitted. */
-export interface ModesDocument {
-  modes: {
-    frequency_hz: number;
-    damping_ratio: number;
-    left: ModeVector;
-    right: ModeVector;
-    std: { frequency_hz: Num; damping_ratio: Num };
-    modal_stiffness_n_per_um?: Num; // in the direction in which the mode moves most
-    modal_mass_kg?: Num;
-    weak?: boolean; // the FRFs hardly show it
-  }[];
-  fit?: {
-    relative_error: Num;
-    mean_relative_error: Num;
-    relative_error_by_frf: Record<string, Num>;
-    converged: boolean;
-    band_hz: [Num, Num];
-  };
-  convergence?: { best: Num[] };
-  stabilisation?: Pole[];
-}
-
+export type ModeVector = ModesDocument['modes'][number]['left'];
 /** A pole of one model order. */
-export interface Pole {
-  order: number;
-  frequency_hz: number;
-  stable: boolean; // frequency, damping and mode shape hardly moved since the order below
-}
+export type Pole = NonNullable<ModesDocument['stabilisation']>[number];
+export type AssemblyDocument = Documents['assembly'];
+export type SegmentDocument = AssemblyDocument['tool'][number];
+export type TipPeak = AssemblyDocument['peaks'][number];
+export type JointDocument = Documents['joint'];
+export type ToolsDocument = Documents['tools'];
+export type ToolRow = ToolsDocument['tools'][number];
+export type StiffnessDocument = Documents['stiffness'];
 
-/** In the keys of assembly.toml. */
-export interface SegmentDocument {
-  length_mm: number;
-  diameter_mm: number;
-  inner_diameter_mm: number; // 0: none
-  youngs_modulus_gpa: number;
-  mass_kg?: number;
-  density_kg_per_m3?: number;
-  loss_factor: number;
-  flutes?: number;
-  flute_diameter_ratio?: number;
-  beam: 'timoshenko' | 'euler-bernoulli';
-}
-
-/** A tool in its holder and what is predicted of its tip. */
-export interface AssemblyDocument {
-  tool: SegmentDocument[];
-  joint:
-    | null // rigid
-    | {
-        translational_stiffness_n_per_m: Num;
-        translational_damping_n_s_per_m: Num;
-        rotational_stiffness_n_m_per_rad: Num;
-        rotational_damping_n_m_s_per_rad: Num;
-        cross_stiffness_n_per_rad: Num;
-        points: number;
-        insertion_length_mm?: Num;
-        shank?: SegmentDocument[]; // of a joint of several points
-      };
-  holder: { segments?: SegmentDocument[]; receptances?: string };
-  peaks: TipPeak[];
-  relative_error: Record<string, Num> | null; // of a prediction beside a measurement
-  suspect_hz: number[]; // lines where the measured holder would create energy
-  unreliable_hz: number[]; // lines where a small error of the measurement became a large one
-  notes: string[];
-}
-
-export interface TipPeak {
-  frf: string;
-  frequency_hz: number;
-  receptance_m_per_n: Num;
-  measured_frequency_hz: Num; // of the measured peak nearest to it
-}
-
-/** A number for each of x, y and z. */
-export type Triple = [Num, Num, Num];
-
-/** A ring of the cutter and where its teeth are in the material. */
-export interface Ring {
-  height_mm: number;
-  position_deg: Num;
-  arcs_deg: [number, number][]; // entry and exit
-}
-
-/** What the rotation about the spindle's axis does to the robot's deflection; null where it cannot stand. */
-export interface SpindleRotation {
-  rotation_deg: number[];
-  deflection_um: Num[];
-  condition_number: Num[];
-  best_deg: Num;
-  best_deflection_um: Num;
-  used_deg: number;
-}
-
-/** What forces.json has of one revolution. */
-export interface Revolution {
-  mean_n: Triple;
-  peak_n: Triple;
-  rms_n: Triple;
-  torque_n_m: Num; // mean
-  peak_torque_n_m: Num;
-  power_w: Num;
-  chip_area_mm2: Num;
-  removal_rate_mm3_per_s: Num;
-  deflection_um: Triple | null; // by the mean force; null: rigid
-  peak_deflection_um: Num;
-  spindle_rotation: SpindleRotation | null;
-  vibration: { verdict: 'stable' | 'chatter' | 'undecided'; chatter_frequency_hz: Num } | null;
-  engagement: Ring[];
-  rotation_deg: number[];
-  fx_n: number[];
-  fy_n: number[];
-  fz_n: number[];
-  torque_by_rotation_n_m: number[];
-  vibrating_fx_n?: number[]; // from the time-domain simulation
-  vibrating_fy_n?: number[];
-  vibrating_fz_n?: number[];
-}
-
-/** forces.json */
-export interface Forces extends Remarks, Partial<Revolution>, Partial<Program> {
-  force_on: 'tool' | 'workpiece';
-}
-
-/** The limit with some of the modes alone. */
-export interface PartLimits {
-  label: string;
-  modes: number[];
-  spindle_speed_rpm: number[];
-  limit_depth_mm: Num[];
-}
-
-export interface DepthCurve {
-  label: string;
-  spindle_speed_rpm: number[];
-  axial_depth_mm: Num[];
-}
-
-export interface Cut {
-  spindle_speed_rpm: number;
-  axial_depth_mm: number;
-  result: Verdict | null;
-  predicted: Verdict | null;
-  limit_depth_mm: Num;
-  agrees: boolean | null;
-  note: string;
-}
-
-export interface Agreement {
-  agree: number;
-  disagree: number;
-  not_compared: number;
-}
-
-/** The limit with the feed in one direction. */
-export interface FeedDirection {
-  feed_direction_deg: number;
-  lowest_limit_mm: Num; // over all speeds; null: none up to the deepest cut that was looked at
-  limit_at_speed_mm?: Num; // at the recommended speed
-}
-
-/** What plan.json says beside its stages' documents. */
-export interface Plan {
-  facts?: Fact[]; // of a cut that lobes were computed for
-  agreement: Agreement;
-  recommended: Recommendation | null;
-  alternatives: Recommendation[];
-  reason?: string; // why nothing is recommended
-  finishing: Finishing;
-  other_limits: DepthCurve[];
-  pairs: PartLimits[];
-  limit_share: { tool: Num[]; workpiece: Num[] }; // empty: no limit was found
-  cuts: Cut[];
-  hit_directions?: string[]; // of each hit: "x", "-y"
-  feed_direction_deg?: Num;
-  feed_directions?: FeedDirection[];
-  decision?: Decision | null; // on a program
-  warnings: string[];
-  notes: string[];
-}
-
-export interface Peak {
-  frequency_hz: number;
-  amplitude: number;
-  kind: 'rotation' | 'tooth passing' | 'chatter' | 'cut or chatter' | 'unexplained';
-  text: string;
-}
-
-export interface Recording {
-  file: string;
-  spindle_speed_rpm: number;
-  axial_depth_mm: Num;
-  verdict: Verdict | null;
-  reason: string;
-  rotation_hz: number;
-  tooth_passing_hz: number;
-  teeth: number;
-  amplitude_unit: string;
-  frequency_hz: number[];
-  amplitude: Num[];
-  peaks: Peak[];
-}
-
-/** One threshold. */
-export interface RocPoint {
-  threshold: Num;
-  false_alarm_rate: number;
-  detection_rate: number;
-  median_delay_s: Num;
-}
-
+// One cut
+export type ExplanationDocument = Documents['explain'];
+/** A peak; the reading of one that is not named is its kind alone. */
+export type ExplainedPeak = ExplanationDocument['peaks'][number];
+export type PeakKind = ExplainedPeak['kind'];
+/** One way to read a peak. */
+export type Reading = ExplainedPeak['others'][number];
+export type SimulationDocument = Documents['simulation'];
+export type Calibration = Documents['calibration'];
 /** The recordings that set the threshold, or those that verify it. */
-export interface CalibratedHalf {
-  stable: number;
-  chatter: number;
-  chosen: RocPoint;
-  roc: RocPoint[];
-}
+export type CalibratedHalf = Calibration['setting'];
+/** One threshold. */
+export type RocPoint = CalibratedHalf['chosen'];
+export type CalibrationRecording = Calibration['recordings'][number];
 
-/** A recording at the chosen threshold. */
-export interface CalibrationRecording {
-  name: string;
-  label: 'stable' | 'chatter';
-  half: 'setting' | 'verifying';
-  early: boolean; // an alarm before chatter began
-  alarm_s: Num;
-  onset_s: Num;
-  lead_s: Num;
-}
+export type CoefficientsDocument = Documents['coefficients'];
+/** A slot, its mean force and what the fit leaves of it. */
+export type Slot = CoefficientsDocument['identification']['residuals'][number];
 
-/** calibration.json; where its status is not "found", threshold and halves are the best of what was tried. */
-export interface Calibration {
-  status: 'found' | 'none-detects' | 'not-verified' | 'no-better-than-chance';
-  reason: string; // why it is no calibration
-  entropy: string;
-  threshold: Num;
-  alarm: 'above' | 'below';
-  setting: CalibratedHalf;
-  verifying: CalibratedHalf;
-  median_lead_s: Num;
-  recordings: CalibrationRecording[];
+// A robot cell
+export type CellDocument = Documents['check'];
+export type CellJoint = CellDocument['joints'][number];
+export type CellPosture = CellDocument['postures'][number];
+export type Vector = CellPosture['tip_mm'];
+export type CellPlacement = CellDocument['placement'];
+/** A pose that the tool cannot take. */
+export type CellMiss = CellPlacement['misses'][number];
+export type CellFigure = CellDocument['drawing']['figures'][number];
+
+// A recording that was monitored
+export type Monitor = Documents['monitor'];
+/** A line of events.jsonl. */
+export type MonitorEvent = Monitor['events'][number];
+/** Alarms of about one frequency that follow each other; of their frequencies chatter_frequency_hz is the surest. */
+export type MonitorAlarm = Monitor['alarms'][number];
+export type MonitorStay = Monitor['stays'][number];
+export type MonitorState = MonitorStay['state'];
+/** Why no speed is suggested. */
+export type NoSpeed = NonNullable<MonitorAlarm['no_speed']>;
+
+// Forces over a revolution, along a program, and over the turn about the spindle's axis
+export type Forces = Shown['forces'];
+type ForcesWith<Key extends keyof Forces> = Forces & Required<Pick<Forces, Key>>;
+export type Revolution = ForcesWith<
+  'mean_n' | 'peak_n' | 'rms_n' | 'torque_n_m' | 'peak_torque_n_m' | 'power_w' | 'chip_area_mm2' | 'removal_rate_mm3_per_s' | 'deflection_um' | 'peak_deflection_um' | 'vibration' | 'engagement' | 'rotation_deg' | 'fx_n' | 'fy_n' | 'fz_n' | 'torque_by_rotation_n_m'
+>;
+export type Program = ForcesWith<'cutting_blocks' | 'power_time_s' | 'torque_limit_n_m' | 'power_limit_w' | 'highest' | 'worst' | 'blocks'>;
+/** A ring of the cutter and where its teeth are in the material. */
+export type Ring = Revolution['engagement'][number];
+export type SpindleRotation = NonNullable<Forces['spindle_rotation']>;
+export type WorstBlock = NonNullable<Documents['forces']['worst']>[number];
+type HighestValues = NonNullable<Documents['forces']['highest']>;
+/** The highest value along a program, and where. */
+export type Highest = NonNullable<HighestValues[keyof HighestValues]>;
+export type Block = Pick<WorstBlock, 'block' | 'line' | 'x_mm' | 'y_mm' | 'z_mm' | keyof HighestValues | 'cuts' | 'path_mm' | 'time_s'>;
+
+// The blocks of a program
+type WholeBlocks = Required<Documents['blocks']['blocks']>;
+/** Columns of blocks.json; a report leaves out those that say nothing. */
+export type BlockColumns = Partial<WholeBlocks> & Pick<WholeBlocks, 'block' | 'line' | 'x_mm' | 'y_mm' | 'z_mm'>;
+export type BlocksDocument = Shown['blocks'];
+export type Regime = NonNullable<WholeBlocks['regime'][number]>;
+/** The limit over one coordinate of the tool's pose, around one block. */
+export type LimitOver = BlocksDocument['limit_over'][number];
+
+// A smoothed program
+export type SmoothDocument = Documents['smooth'];
+/** One method's trajectory. */
+export type SmoothedBy = NonNullable<SmoothDocument['methods']>[number];
+export type SmoothedJoint = SmoothedBy['joints'][number];
+/** Where a trajectory came nearest to a limit, and how many samples violate it. */
+export type NearestToLimit = SmoothedJoint['velocity'];
+
+/** As the page has them: it shows neither deviations nor what a reader left out, and of long programs some columns. */
+interface Shown extends Omit<Documents, 'frf' | 'forces' | 'blocks'> {
+  frf: Omit<Documents['frf'], 'deviation_m_per_n'>;
+  forces: Omit<Documents['forces'], 'skipped' | 'blocks'> & { blocks?: Block[] };
+  blocks: Omit<Documents['blocks'], 'blocks'> & { blocks: BlockColumns };
 }
 
 export interface StageFile {
@@ -337,36 +166,14 @@ export interface StageFile {
 }
 
 /** What robomill writes into the page. */
-export interface Report {
+export type Report = { -readonly [Member in keyof typeof members]: Shown[(typeof members)[Member]] | null } & {
   title: string;
   created: string;
-  plan: Plan | null;
-  frf: FrfDocument | null; // measured, or predicted where there is an assembly
-  fitted: FrfDocument | null;
-  measured: FrfDocument | null; // beside predicted ones
-  assembly: AssemblyDocument | null;
-  modes: ModesDocument | null;
-  workpiece_modes: ModesDocument | null;
-  lobes: LobesDocument | null;
-  forces: Forces | null;
-  blocks: BlocksDocument | null;
-  smooth: SmoothDocument | null;
-  motion: MotionDocument | null; // of the same program
-  cell: CellDocument | null;
-  monitor: Monitor | null;
-  calibration: Calibration | null;
+  motion: MotionDocument | null; // of the smoothed program
   recordings: Recording[] | null;
-  joint: JointDocument | null; // found with the FRFs above
-  tools: ToolsDocument | null;
-  sweep: SweepDocument | null;
-  comparison: ComparisonDocument | null;
-  explanation: ExplanationDocument | null;
-  simulation: SimulationDocument | null;
-  vibration: VibrationDocument | null; // of the same cut
-  coefficients: CoefficientsDocument | null;
-  stiffness: StiffnessDocument | null;
+  vibration: VibrationDocument | null; // of the simulated cut
   assumed: Assumption[];
   warnings: string[]; // that no document holds
   notes: string[];
   files: StageFile[];
-}
+};

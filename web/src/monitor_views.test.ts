@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
 import { aliasText, chatterMarks, duration, inputFaultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
+import { sampleReport } from './report_sample';
 
 const alarm: MonitorAlarm = {
   count: 3,
@@ -20,13 +21,14 @@ const alarm: MonitorAlarm = {
   no_speed: null,
 };
 
+const sample = sampleReport().monitor!;
+
 function said(part: Partial<Monitor>): string[] {
-  const monitor = { state_times: [], alarm_count: 0, alarms: [], ...part } as unknown as Monitor;
-  return findings(monitor).map(({ head, text }) => head + text);
+  return findings({ ...sample, state_times: [], alarm_count: 0, alarms: [], ...part }).map(({ head, text }) => head + text);
 }
 
 const stable = (duration_s: number) => ({ state: 'stable' as const, reason: null, duration_s });
-const blind = (reason: string, duration_s: number) => ({ state: 'blind' as const, reason, duration_s });
+const blind = (reason: NonNullable<MonitorStay['reason']>, duration_s: number) => ({ state: 'blind' as const, reason, duration_s });
 
 describe('what was found, in words', () => {
   it('names alarms first, with where and what is quiet', () => {
@@ -117,7 +119,7 @@ describe('shaded stays', () => {
 it('marks where the frequency of chatter is, apart enough to be distinguished', () => {
   const low = Array.from({ length: 1000 }, (_, run) => (run < 500 ? null : run === 700 ? 300 : 680));
   const high = low.map((value, run) => (value !== null && run === 800 ? 900 : value));
-  const { time_s, frequency_hz } = chatterMarks({ decisions: { run_s: 2, chatter_frequency_hz: { low, high } } } as unknown as Monitor, 2000);
+  const { time_s, frequency_hz } = chatterMarks({ ...sample, decisions: { ...sample.decisions, run_s: 2, chatter_frequency_hz: { low, high } } }, 2000);
   expect(time_s[0]).toBe(1000);
   expect(time_s.length).toBeLessThan(40);
   for (const [time, frequency] of [[1400, 300], [1600, 900]]) expect(time_s.some((at, i) => at === time && frequency_hz[i] === frequency)).toBe(true);
@@ -126,9 +128,10 @@ it('marks where the frequency of chatter is, apart enough to be distinguished', 
 
 describe('the speed', () => {
   const decisions = (speed: Num[], deviation: Num[]) => ({
-    decisions: { run_s: 0.5, spindle_speed_rpm: { low: speed, high: speed.map((value) => value && value + 10) }, spindle_speed_std_rpm: { low: deviation, high: deviation } },
+    ...sample,
+    decisions: { ...sample.decisions, run_s: 0.5, spindle_speed_rpm: { low: speed, high: speed.map((value) => value && value + 10) }, spindle_speed_std_rpm: { low: deviation, high: deviation } },
   });
-  const monitor = decisions([null, 3000, 3010, null, null, 6000], [null, 5, null, null, null, 1]) as unknown as Monitor;
+  const monitor = decisions([null, 3000, 3010, null, null, 6000], [null, 5, null, null, null, 1]);
   it('is a stretch for each time that it is known', () => {
     expect(speedStretches(monitor)).toEqual([
       { time_s: [0.5, 1, 1.5], speed_rpm: [3005, 3015, 3015], low_rpm: [2995, 3010, 3010], high_rpm: [3015, 3020, 3020] },

@@ -1,25 +1,23 @@
 // What is said and drawn of a monitored recording, made of its document.
-import type { Folded, Monitor, MonitorAlarm, MonitorStay, NoSpeed, Num } from './documents';
+import type { Monitor, MonitorAlarm, MonitorStay, NoSpeed, Num } from './documents';
 import { fixed, modeName, withDeviation } from './text';
+
+/** What the line of chatter may be that was measured, folded: empty where it is as measured. Why no speed is named. */
+type Folded = Pick<MonitorAlarm, 'line_frequencies_hz' | 'no_speed'>;
+
+const reasonTexts: Record<string, string> = {
+  'no-signal': 'no usable signal',
+  clipped: 'signal at the limit of its converter',
+  'speed-unknown': 'spindle speed unknown',
+  gap: 'samples lost',
+  standstill: 'the spindle stands still',
+  overloaded: 'the monitor was too slow for the samples',
+  none: 'reason unknown',
+};
 
 /** Why the monitor could not tell, in words. */
 export function reasonText(reason: string | null): string {
-  switch (reason) {
-    case 'no-signal':
-      return 'no usable signal';
-    case 'clipped':
-      return 'signal at the limit of its converter';
-    case 'speed-unknown':
-      return 'spindle speed unknown';
-    case 'gap':
-      return 'samples lost';
-    case 'standstill':
-      return 'the spindle stands still';
-    case 'overloaded':
-      return 'the monitor was too slow for the samples';
-    default:
-      return reason === null || reason === 'none' ? 'reason unknown' : reason;
-  }
+  return reasonTexts[reason ?? 'none'] ?? reason ?? '';
 }
 
 const faultTexts: Record<string, string> = {

@@ -1,9 +1,8 @@
 // The page of the sample report: its words, without its plots.
 import { renderToString } from 'preact-render-to-string';
 import { beforeEach, expect, it, vi } from 'vitest';
-import type { Report } from './documents';
+import type { Decision, Report } from './documents';
 import { Page } from './page';
-import type { Decision } from './decision';
 import { sampleReport } from './report_sample';
 import { smoothedBy } from './smooth_views';
 
@@ -114,7 +113,7 @@ it('shows the decision first: what to run, beside what was programmed and what w
 });
 
 it('says why nothing was decided, and shows the program as it is', () => {
-  const html = decisionPage({ status: 'infeasible', reason: 'block 512 (line 525) chatters at every speed', decided: null, stretches: [], changes: null, gamma_map: null });
+  const html = decisionPage({ status: 'infeasible', reason: 'block 512 (line 525) chatters at every speed', decided: null, stretches: [], gamma_map: null });
   expect(html).toContain('</a> chatters at every speed');
   expect(html).toContain('As programmed</th>');
   for (const part of ['class="figures"', 'As decided', 'Collisions were', 'Stretch by stretch', 'gamma-map']) expect(html).not.toContain(part);
@@ -125,7 +124,7 @@ it('shows a decision of which no number is known, without a path to go to', () =
   const { decided } = report.plan!.decision!;
   const none = Object.fromEntries(Object.keys(decided!).map((key) => [key, null]));
   const outcome = { ...none, violations: [] } as unknown as NonNullable<Decision['decided']>;
-  const html = decisionPage({ as_programmed: outcome, decided: outcome, stretches: [], evaluations: null, collisions_checked: true });
+  const html = decisionPage({ as_programmed: outcome, decided: outcome, stretches: [], collisions_checked: true });
   expect(html.match(/<div class="unknown">/g)).toHaveLength(10);
   expect(html).not.toContain('href="#path"');
   expect(html).not.toMatch(/NaN|undefined|null|Collisions were/);
@@ -145,12 +144,12 @@ it('shows of many stretches those that take longest, and all of them on a click'
 
 it('says of a decision that violates limits which, and what is allowed', () => {
   const decided = report.plan!.decision!.decided!;
-  const violation = { limit: 'spindle_power', block: 12, line: 25, value: 9.1, allowed: 7.5, unit: 'kW' };
+  const violation = { limit: 'power' as const, block: 12, line: 25, value: 9.1, allowed: 7.5, unit: 'kW' };
   const html = decisionPage({ decided: { ...decided, violations: [violation] } });
   expect(html).toContain('violates 1 limit<');
   expect(html).toContain('<div class="over"><dt>Sustained power</dt>');
   expect(html).toContain('at most 7.5\u202fkW');
-  expect(html).toContain('<td>Spindle power</td><td class="number">9.1\u202fkW</td><td class="number">at most 7.5\u202fkW</td>');
+  expect(html).toContain('<td>Power</td><td class="number">9.1\u202fkW</td><td class="number">at most 7.5\u202fkW</td>');
 });
 
 it('names the worst blocks of a program, and says where none cuts', () => {
@@ -262,14 +261,14 @@ it('leaves out of the forces what is not there', () => {
   Object.assign(forces!, { spindle_rotation: null, engagement: [], deflection_um: null, force_on: 'workpiece' });
   expect(page()).toContain('Force on the workpiece');
   for (const part of ['Along the program', 'γ', 'Engagement', 'Deflection by']) expect(page()).not.toContain(part);
-  forces!.engagement = [{ height_mm: 1, position_deg: null, arcs_deg: [] }];
+  forces!.engagement = [{ height_mm: 1, radius_mm: 3, position_deg: 20, arcs_deg: [] }];
   expect(page()).toContain('No tooth is in the material here.');
   expect(page()).not.toContain('data-plot="engagement"');
 });
 
 it('says what the simulation found', () => {
   expect(page()).toContain('<strong>stable</strong> Simulated in the time domain');
-  report.forces!.vibration = { verdict: 'chatter', chatter_frequency_hz: 683.4 };
+  report.forces!.vibration = { ...report.forces!.vibration!, verdict: 'chatter', chatter_frequency_hz: 683.4 };
   expect(page()).toContain('<strong>chatter</strong> Chatter at 683 Hz. Simulated');
   report.forces!.vibration = null;
   expect(page()).not.toContain('Simulated in the time domain');

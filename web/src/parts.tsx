@@ -84,6 +84,15 @@ export function Details({ summary, children }: { summary: string; children: Comp
   );
 }
 
+/** A table that opens on a click; its caption is what is clicked. */
+export function DetailsTable<Row>({ summary, ...table }: TableProps<Row> & { summary?: string }) {
+  return (
+    <Details summary={summary ?? table.caption}>
+      <Table quiet {...table} />
+    </Details>
+  );
+}
+
 /** Labels and values; nothing where there are none. */
 export function Facts({ facts }: { facts: Fact[] }) {
   if (facts.length === 0) return null;

@@ -10,10 +10,3 @@ export interface Fact {
   value: string;
   meaning?: string;
 }
-
-/** What a document says in words. */
-export interface Remarks {
-  facts: Fact[];
-  warnings: string[];
-  notes: string[];
-}

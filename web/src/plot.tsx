@@ -183,6 +183,11 @@ interface ChoiceProps {
 
 let groups = 0;
 
+/** Of an axis. */
+export function LogChoice({ legend, logarithmic, choose }: { legend: string; logarithmic: boolean; choose: (logarithmic: boolean) => void }) {
+  return <Choice legend={legend} names={['linear', 'logarithmic']} chosen={Number(logarithmic)} choose={(chosen) => choose(chosen === 1)} />;
+}
+
 /** A group of radio buttons above a plot. */
 export function Choice({ legend, names, chosen, choose }: ChoiceProps) {
   const group = useRef(0);

@@ -1,96 +1,12 @@
-// What is recorded for the page alone: a monitored recording, a smoothed program's motion.
+// What is recorded for the page alone: a smoothed program's motion, a simulated vibration, spectra of cuts.
 import type { Band } from './bands';
-import type { Num, Owner, Remarks } from './parts_of_documents';
+import type { Num } from './parts_of_documents';
 
 /** One point after another in the work frame. */
 export interface Places {
   x_mm: number[];
   y_mm: number[];
   z_mm: number[];
-}
-
-export type MonitorState = 'stable' | 'transition' | 'chatter' | 'blind';
-
-/** A state, and why the monitor could not tell where it is blind: "no-signal", "clipped", "speed-unknown", "gap", "standstill", "overloaded". */
-interface Stated {
-  state: MonitorState;
-  reason: string | null;
-}
-
-export interface MonitorStay extends Stated {
-  from_s: number;
-  to_s: number;
-}
-
-/** Why no speed is suggested: a mode of the arm, perhaps one, modes that couple through the force, a line that may be folded, or forced vibration. */
-export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling' | 'ambiguous-alias' | 'forced-vibration';
-
-/** What the line of chatter may be that was measured, folded: empty where it is as measured. Why no speed is named. */
-export interface Folded {
-  line_frequencies_hz: number[];
-  no_speed: NoSpeed | null;
-}
-
-/** What an alarm and an event say of chatter. */
-interface OfChatter extends Folded {
-  chatter_frequency_hz: Num;
-  chatter_frequency_std_hz: Num;
-  hidden: 'locked' | 'period-doubling' | null;
-  mode: Num;
-  mode_of: Owner | null;
-  suggested_spindle_speed_rpm: Num;
-}
-
-/** Alarms of about one frequency that follow each other; of their frequencies chatter_frequency_hz is the surest. */
-export interface MonitorAlarm extends OfChatter {
-  count: number;
-  from_s: number;
-  to_s: number;
-  chatter_s: number;
-  low_frequency_hz: Num;
-  high_frequency_hz: Num;
-  channel: string | null;
-}
-
-/** A line of events.jsonl. */
-export interface MonitorEvent extends Stated, OfChatter {
-  time_s: number;
-  event: 'state' | 'window' | 'fault' | 'stream' | 'recording';
-  score: Num;
-  threshold: Num;
-  command: 'spindle-speed' | 'feed' | 'hold' | 'release' | 'none' | null; // that followed by a rule of [act]
-  faults: string[];
-  what?: string | null; // of a stream
-  file?: string | null; // of a recording
-  message?: string; // of a stream, or why the command
-}
-
-/** A row a frequency, up to the highest that is worth drawing; null in gaps. */
-export interface Spectrogram {
-  channel: string;
-  begin_s: number;
-  step_s: number;
-  max_frequency_hz: number;
-  frequency_hz: number[];
-  level_db: Num[][];
-}
-
-/** A monitored recording. */
-export interface Monitor extends Remarks {
-  unit: string;
-  wave_run_s: number;
-  channels: { name: string; wave: Band }[];
-  spectrogram: Spectrogram | null;
-  teeth: Num;
-  decisions: Record<'score' | 'threshold' | 'energy_entropy' | 'chatter_frequency_hz' | 'spindle_speed_rpm' | 'spindle_speed_std_rpm', Band> & { run_s: number };
-  decision_count: number;
-  compute_mean_us: Num; // of one decision
-  compute_max_us: Num;
-  stays: MonitorStay[];
-  state_times: (Stated & { duration_s: number })[];
-  alarm_count: number;
-  alarms: MonitorAlarm[];
-  events: MonitorEvent[];
 }
 
 /** Joints' bands in their unit by time. */
@@ -130,4 +46,34 @@ export interface MotionDocument {
   program: Places;
   corners: Corner[];
   motions: Motion[]; // one a method, in the order of smooth.json
+}
+
+/** What is recorded of a simulation for the page: curves by axis, those that do not vanish. */
+export interface VibrationDocument {
+  run_s: number;
+  displacement_um: Record<string, Band>;
+  force_n: Record<string, Band>;
+  spectrum: { from_s: number; frequency_hz: number[]; x_um?: Num[]; y_um?: Num[]; z_um?: Num[] } | null;
+}
+
+export interface Peak {
+  frequency_hz: number;
+  amplitude: number;
+  kind: 'rotation' | 'tooth passing' | 'chatter' | 'cut or chatter' | 'unexplained';
+  text: string;
+}
+
+export interface Recording {
+  file: string;
+  spindle_speed_rpm: number;
+  axial_depth_mm: Num;
+  verdict: 'stable' | 'borderline' | 'chatter' | null;
+  reason: string;
+  rotation_hz: number;
+  tooth_passing_hz: number;
+  teeth: number;
+  amplitude_unit: string;
+  frequency_hz: number[];
+  amplitude: Num[];
+  peaks: Peak[];
 }

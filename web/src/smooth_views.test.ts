@@ -1,15 +1,11 @@
 import { expect, it } from 'vitest';
 import type { SmoothDocument, SmoothedJoint } from './documents';
+import { sampleReport } from './report_sample';
+
+const sample = sampleReport().smooth!;
 import { boundText, jointShare, limitUses, smoothedBy, smoothFacts, smoothWarnings, trackingError } from './smooth_views';
 
 const place = (violations = 0) => ({ violations, at_s: 0.5, block: 3 });
-
-function tool(unit: 'mm' | 'deg') {
-  const suffixes = { error: `_${unit}`, velocity: `_${unit}_per_s`, acceleration: `_${unit}_per_s2`, jerk: `_${unit}_per_s3`, share_of_feed: '' };
-  return Object.fromEntries(
-    Object.entries(suffixes).flatMap(([name, suffix]) => [[`max_${name}${suffix}`, 4], [`limit_${name}${suffix}`, 8], [name, place()]]),
-  ) as unknown as SmoothDocument['tip'] & SmoothDocument['axis'];
-}
 
 function joint(unit: 'rad' | 'm', more: Partial<SmoothedJoint> = {}): SmoothedJoint {
   return {
@@ -25,42 +21,56 @@ function joint(unit: 'rad' | 'm', more: Partial<SmoothedJoint> = {}): SmoothedJo
     jerk: place(),
     beyond_position: 0,
     position: place(),
+    violations: 0,
     ...more,
   };
 }
 
 function smoothed(more: Partial<SmoothDocument> = {}): SmoothDocument {
+  const { methods: _, ...document } = sample;
   return {
-    method: 'verified',
+    ...document,
     duration_s: 12,
     lower_bound_s: 11,
-    max_tip_error_mm: 0.01,
-    max_axis_error_deg: 0.02,
     violations: 0,
-    tip: tool('mm'),
-    axis: tool('deg'),
+    tip: { ...sample.tip, max_error_mm: 4, limit_error_mm: 8, error: place() },
     joints: [joint('rad'), joint('m')],
-    max_pose_error_mm: 0,
-    limit_pose_error_mm: 1e-4,
-    pose_error: place(),
-    max_dwell_error_s: 0,
-    limit_dwell_error_s: 0.002,
-    dwell_error: place(),
-    faulty_samples: 0,
-    blocks: 16,
-    samples: 12001,
-    plan_seconds: 0.1,
-    sum_t2_s: null,
-    written: true,
-    program: 'part.ngc',
-    cell: 'cell.toml',
-    gamma_deg: null,
-    skipped: [],
     notes: [],
-    robot_program: null,
     ...more,
   };
 }
+
+type Collisions = NonNullable<SmoothDocument['collisions']>;
+const struck: Collisions = {
+  status: 'collision',
+  bodies: ['spindle', 'post'],
+  least_distance_mm: null,
+  depth_mm: 3,
+  clearance_mm: 5,
+  looked_within_mm: 50,
+  block: 2,
+  line: 5,
+  at_s: 1.2,
+  positions: 400,
+  most_between_mm: 1,
+  text: 'spindle collides with post, line 5',
+};
+
+const robotProgram: NonNullable<SmoothDocument['robot_program']> = {
+  points: 120,
+  shortest_step_ms: 4,
+  longest_step_ms: 12,
+  max_joint_deviation_deg: 0.01,
+  max_tip_deviation_mm: 0.02,
+  max_axis_deviation_deg: 0.01,
+  max_tip_error_mm: 0.03,
+  max_axis_error_deg: 0.02,
+  limit_error_mm: 0.05,
+  limit_error_deg: 0.1,
+  spindle_speeds_rpm: [9000],
+  most_points: null,
+  holds: true,
+};
 
 it('lists every limit in the units of the shop', () => {
   const uses = limitUses(smoothed());
@@ -98,7 +108,7 @@ it('is its own method where there is one alone', () => {
 });
 
 it('says what was run, and how the flange turns', () => {
-  expect(smoothFacts(smoothed()).map(({ value }) => value)).toEqual(['part.ngc, 16 blocks', 'cell.toml, 2 joints', 'tip 8 mm, axis 8°']);
+  expect(smoothFacts(smoothed()).map(({ value }) => value)).toEqual(['zigzag.ngc, 12 blocks', 'cell.toml, 2 joints', 'tip 8 mm, axis 0.1°', 'not checked: the cell has no [geometry]']);
   const turn = (lowest: number, highest: number) => smoothFacts(smoothed({ gamma_deg: [lowest, highest] }))[3];
   expect(turn(30, 30)).toEqual({ label: 'Turn about the tool', value: '30°' });
   expect(turn(-30, 45.5)?.value).toBe('-30° to 45.5° along the way');
@@ -111,11 +121,10 @@ it('sets the duration beside its bound', () => {
 
 it('warns of what does not hold', () => {
   expect(smoothWarnings(smoothed())).toEqual([]);
-  const struck = { status: 'collision', text: 'spindle collides with post, line 5' } as const;
   expect(smoothWarnings(smoothed({ collisions: struck }))).toEqual(['There is no trajectory: spindle collides with post, line 5.']);
   expect(smoothFacts(smoothed({ collisions: null })).at(-1)!.value).toMatch(/^not checked/);
   expect(smoothWarnings(smoothed({ violations: 7 }))).toEqual(['7 violations of limits; the trajectory was written all the same.']);
   expect(smoothWarnings(smoothed({ violations: 7, written: false }))).toEqual(['7 violations of limits: there is no trajectory.']);
-  expect(smoothWarnings(smoothed({ robot_program: { holds: true } }))).toEqual([]);
-  expect(smoothWarnings(smoothed({ written: false, robot_program: { holds: false } }))).toEqual(['The robot program does not hold, see the notes; it was not written.']);
+  expect(smoothWarnings(smoothed({ robot_program: robotProgram }))).toEqual([]);
+  expect(smoothWarnings(smoothed({ written: false, robot_program: { ...robotProgram, holds: false } }))).toEqual(['The robot program does not hold, see the notes; it was not written.']);
 });

@@ -1,6 +1,6 @@
 // What tables and plots of a smoothed program need, made of smooth.json.
 import type { Fact, NearestToLimit, Num, SmoothDocument, SmoothedBy, SmoothedJoint } from './documents';
-import { general, percent, significant } from './text';
+import { general, percent, scaled, significant } from './text';
 
 /** The method asked for, then those beside it. */
 export function smoothedBy(document: SmoothDocument): [SmoothedBy, ...SmoothedBy[]] {
@@ -19,8 +19,7 @@ export function smoothFacts({ program, blocks, cell, joints, tip, axis, gamma_de
     const [lowest, highest] = gamma_deg.map(degrees);
     facts.push({ label: 'Turn about the tool', value: lowest === highest ? lowest! : `${lowest} to ${highest} along the way` });
   }
-  if (collisions !== undefined) facts.push({ label: 'Collisions', value: collisions?.text ?? 'not checked: the cell has no [geometry]' });
-  return facts;
+  return [...facts, { label: 'Collisions', value: collisions?.text ?? 'not checked: the cell has no [geometry]' }];
 }
 
 export function smoothWarnings({ violations, written, robot_program: program, collisions }: SmoothDocument): string[] {
@@ -39,10 +38,6 @@ export function boundText({ duration_s: duration, lower_bound_s: bound }: Smooth
 /** The unit that a joint is shown in, and how many of it are one of the document's. */
 export function jointUnit({ unit }: SmoothedJoint): [string, number] {
   return unit === 'rad' ? ['°', 180 / Math.PI] : ['mm', 1e3];
-}
-
-export function scaled(value: Num, factor: number): Num {
-  return value === null ? null : factor * value;
 }
 
 /** One limit and how near a method came to it. */

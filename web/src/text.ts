@@ -4,6 +4,10 @@ import type { Num, Owner } from './documents';
 
 export const dash = '–';
 
+export function scaled(value: Num, factor: number): Num {
+  return value === null ? null : factor * value;
+}
+
 function groupThousands(digits: string): string {
   const whole = digits.replace(/^-/, '').split('.')[0] ?? '';
   return whole.length < 5 ? digits : digits.replace(whole, whole.replace(/\d(?=(\d{3})+$)/g, `$&${thinSpace}`));
@@ -42,6 +46,10 @@ export function withPower(value: Num): string {
   return `${withoutZeros(digits)}·10${raised}`;
 }
 
+export function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 /** A ratio as percent: 0.0127 with 2 decimals is "1.27 %"; an en dash for null. */
 export function percent(ratio: Num, decimals: number): string {
   return ratio === null ? dash : `${(100 * ratio).toFixed(decimals)}${thinSpace}%`;
@@ -57,6 +65,6 @@ export function withDeviation(value: Num, deviation: Num, scale: number, decimal
 }
 
 /** "mode 3", "mode 3 of the workpiece"; empty where no mode is named. */
-export function modeName({ mode, mode_of }: { mode: Num; mode_of: Owner | null }): string {
+export function modeName({ mode = null, mode_of }: { mode?: Num; mode_of?: Owner | null } = {}): string {
   return mode === null ? '' : `mode ${mode}${mode_of === 'workpiece' ? ' of the workpiece' : ''}`;
 }

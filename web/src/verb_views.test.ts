@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import type { ExplainedPeak, Reading, Slot } from './documents';
 import { sweepSample } from './lobes_sample';
 import { coefficientRows, intervalsText, jointRows, reachOf, readingText, slotGroups, sweptOf } from './verb_views';
+import { sampleReport } from './report_sample';
 
 const chatter: Reading = {
   kind: 'chatter',
@@ -17,6 +18,8 @@ const chatter: Reading = {
   likelihood_per_hz: 0.3,
 };
 
+const report = sampleReport();
+
 describe('readings', () => {
   it('say how a peak follows from its mode', () => {
     expect(readingText(chatter)).toBe('mode 3 at 433.00 Hz');
@@ -30,9 +33,9 @@ describe('readings', () => {
     expect([alone('chatter'), alone('cut or chatter'), alone('unexplained')]).toEqual(['chatter of an ambiguous mode', 'the cut, or chatter', 'nothing known']);
   });
   it('are drawn beyond the highest peak', () => {
-    const peaks = [{ frequency_hz: 1000 }] as ExplainedPeak[];
-    expect(reachOf({ peaks, spindle_speed_rpm: 6000 } as never)).toBeCloseTo(1060);
-    expect(reachOf({ peaks: [], spindle_speed_rpm: 6000 } as never)).toBeCloseTo(212);
+    const document = { ...report.explanation!, spindle_speed_rpm: 6000 };
+    expect(reachOf({ ...document, peaks: [{ ...document.peaks[0]!, frequency_hz: 1000 }] })).toBeCloseTo(1060);
+    expect(reachOf({ ...document, peaks: [] })).toBeCloseTo(212);
   });
 });
 
@@ -57,13 +60,14 @@ it('groups slots by depth and speed, each by feed', () => {
 });
 
 it('has a row of coefficients for each direction that was found', () => {
-  const rows = coefficientRows({ coefficients: { tangential_n_per_mm2: 700, tangential_edge_n_per_mm: 12, axial_n_per_mm2: null }, std: { tangential_n_per_mm2: 7 } });
+  const none = { tangential_n_per_mm2: null, radial_n_per_mm2: null, axial_n_per_mm2: null, tangential_edge_n_per_mm: null, radial_edge_n_per_mm: null, axial_edge_n_per_mm: null };
+  const rows = coefficientRows({ coefficients: { ...none, tangential_n_per_mm2: 700, tangential_edge_n_per_mm: 12 }, std: { ...none, tangential_n_per_mm2: 7 } });
   expect(rows).toEqual([{ direction: 'tangential', cutting: { value: 700, std: 7 }, edge: { value: 12, std: null }, r_squared: null, noise_n: null }]);
 });
 
 it('has the four values of a joint', () => {
   const four = <T>(value: T) => ({ translational_stiffness_n_per_m: value, translational_damping_n_s_per_m: value, rotational_stiffness_n_m_per_rad: value, rotational_damping_n_m_s_per_rad: value });
-  const rows = jointRows({ joint: four(2), objective: 1, relative_error: 0.1, std: four(0.1), identifiable: four(true), visible_up_to: { translational_stiffness_n_per_m: 9 }, convergence: { status: 'converged', iterations: 1, best: [] }, suspect_hz: [], notes: [] });
+  const rows = jointRows({ ...report.joint!, joint: four(2), std: four(0.1), identifiable: four(true), visible_up_to: { translational_stiffness_n_per_m: 9, rotational_stiffness_n_m_per_rad: null } });
   expect(rows.map(({ unit }) => unit)).toEqual(['N/m', 'N·s/m', 'N·m/rad', 'N·m·s/rad']);
   expect(rows.map(({ visible_up_to: visible }) => visible)).toEqual([9, null, null, null]);
 });

@@ -1,7 +1,8 @@
 // What tables and plots need of the documents of single verbs.
+import { keys as keysOfJoint } from '#schema/joint';
 import { keys } from '#schema/sweep';
-import type { ChartPoint, CoefficientsDocument, ExplainedPeak, ExplanationDocument, JointDocument, JointParameter, Num, Reading, Slot, SweepDocument } from './documents';
-import { fixed, modeName, significant } from './text';
+import type { ChartPoint, CoefficientsDocument, ExplainedPeak, ExplanationDocument, JointDocument, Num, Reading, Slot, SweepDocument } from './documents';
+import { capital, fixed, modeName, significant } from './text';
 
 const sweptKeys = { radial_depth: 'radial_depth_mm', lead: 'lead_deg', tilt: 'tilt_deg' } as const;
 const sweptNames = { radial_depth: 'Radial depth', lead: 'Lead', tilt: 'Tilt' };
@@ -63,11 +64,12 @@ export interface CoefficientRow {
   noise_n: Num;
 }
 
-type Fitted = Pick<CoefficientsDocument['identification'], 'std'> & Pick<CoefficientsDocument, 'coefficients'>;
+type Identification = CoefficientsDocument['identification'];
+type Fitted = Pick<Identification, 'std'> & Pick<CoefficientsDocument, 'coefficients'>;
 
-export function coefficientRows({ coefficients, std }: Fitted, quality?: CoefficientsDocument['identification']): CoefficientRow[] {
-  return ['tangential', 'radial', 'axial'].flatMap((direction) => {
-    const pair = (key: string) => ({ value: coefficients[key] ?? null, std: std[key] ?? null });
+export function coefficientRows({ coefficients, std }: Fitted, quality?: Identification): CoefficientRow[] {
+  return (['tangential', 'radial', 'axial'] as const).flatMap((direction) => {
+    const pair = (key: keyof typeof std) => ({ value: coefficients[key], std: std[key] });
     const row = {
       direction,
       cutting: pair(`${direction}_n_per_mm2`),
@@ -89,13 +91,14 @@ export interface JointRow {
   visible_up_to: Num;
 }
 
-const jointNames: [JointParameter, string, string][] = [
-  ['translational_stiffness_n_per_m', 'Translational stiffness', 'N/m'],
-  ['translational_damping_n_s_per_m', 'Translational damping', 'N·s/m'],
-  ['rotational_stiffness_n_m_per_rad', 'Rotational stiffness', 'N·m/rad'],
-  ['rotational_damping_n_m_s_per_rad', 'Rotational damping', 'N·m·s/rad'],
-];
+const jointKeys: Record<string, { unit: string; meaning: string }> = keysOfJoint;
 
-export function jointRows({ joint, std, identifiable, visible_up_to: visible }: JointDocument): JointRow[] {
-  return jointNames.map(([key, name, unit]) => ({ name, unit, value: joint[key], std: std[key], identifiable: identifiable[key], visible_up_to: visible[key] ?? null }));
+export function jointRows({ joint, std, identifiable, visible_up_to }: JointDocument): JointRow[] {
+  const deviations: Record<string, Num> = std;
+  const known: Record<string, boolean> = identifiable;
+  const visible: Record<string, Num> = visible_up_to;
+  return Object.entries(joint).map(([key, value]) => {
+    const { meaning = key, unit = '' } = jointKeys[`joint.${key}`] ?? {};
+    return { name: capital(meaning), unit, value, std: deviations[key] ?? null, identifiable: known[key] ?? false, visible_up_to: visible[key] ?? null };
+  });
 }

@@ -70,13 +70,13 @@ export interface FeedDirections {
   searched_depth_mm: Num;
 }
 
-export function feedOf({ feed_directions: rows = [], feed_direction_deg: used = null, recommended }: Plan, searched: Num): FeedDirections {
+export function feedOf({ feed_directions: rows = [], feed_direction_deg: used, recommended }: Plan, searched: Num): FeedDirections {
   return {
     direction_deg: rows.map((row) => row.feed_direction_deg),
     lowest_limit_mm: rows.map((row) => row.lowest_limit_mm),
     limit_at_speed_mm: recommended === null ? null : rows.map((row) => row.limit_at_speed_mm ?? null),
     spindle_speed_rpm: recommended?.spindle_speed_rpm ?? null,
-    used_direction_deg: used,
+    used_direction_deg: used ?? null,
     searched_depth_mm: searched,
   };
 }
@@ -117,11 +117,7 @@ function unitOf(name: string): [string, number] {
 function curveOf(document: FrfDocument | null, name: string, scale: number): Curve | null {
   const values = document?.receptance_m_per_n[name];
   if (!document || !values) return null;
-  const complex = (f: (re: number, im: number) => number) =>
-    values.re.map((re, i) => {
-      const im = values.im[i] ?? null;
-      return re === null || im === null ? null : f(re, im);
-    });
+  const complex = (f: (re: number, im: number) => number) => values.re.map((re, i) => f(re, values.im[i]!));
   return {
     frequency_hz: document.frequency_hz,
     magnitude: complex((re, im) => scale * Math.hypot(re, im)),
@@ -220,11 +216,11 @@ export function assemblyOf({ tool, joint, holder, peaks, suspect_hz, unreliable_
   };
 }
 
-export function isRevolution(forces: Forces): forces is Forces & Revolution {
+export function isRevolution(forces: Forces): forces is Revolution {
   return forces.rotation_deg !== undefined;
 }
 
-export function isProgram(forces: Forces): forces is Forces & Program {
+export function isProgram(forces: Forces): forces is Program {
   return forces.blocks !== undefined && forces.blocks.length > 0;
 }
 

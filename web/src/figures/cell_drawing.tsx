@@ -1,5 +1,5 @@
 // The picture of a cell as SVG that takes its colours from the page.
-import type { CellDocument } from '../cell_document';
+import type { CellDocument } from '../documents';
 import { layOutCell, viewWidth, type CellView, type FigureLines, type FrameMark, type Point } from './cell_layout';
 
 function tenths(value: number): string {

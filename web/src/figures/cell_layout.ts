@@ -1,5 +1,5 @@
 // What stands where in the picture of a cell: seen from the side and from above, to one scale.
-import type { CellDocument, CellFigure, Vector } from '../cell_document';
+import type { CellDocument, CellFigure, Vector } from '../documents';
 import { general } from '../text';
 
 export type Point = [x: number, y: number];

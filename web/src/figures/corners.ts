@@ -1,8 +1,8 @@
 import type { Corner, MotionDocument, SmoothDocument } from '../documents';
 import { smoothedBy } from '../smooth_views';
 import { dashes } from './smooth';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
-import { frame, views, viewsLayout } from './track';
+import { axis, layout, lines, plain, seriesColour, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { colouredPoints, frame, views, viewsLayout } from './track';
 
 /** The programmed path and the tip's, from above and from the side, coloured by speed. */
 export function pathFigure({ program, motions }: MotionDocument, theme: Theme, width: number): Figure {
@@ -10,28 +10,8 @@ export function pathFigure({ program, motions }: MotionDocument, theme: Theme, w
   const both = { x_mm: [...program.x_mm, ...track.x_mm], y_mm: [...program.y_mm, ...track.y_mm], z_mm: [...program.z_mm, ...track.z_mm] };
   const place = frame(both, width);
   const data: Trace[] = views.flatMap((view) => [
-    {
-      type: 'scatter',
-      mode: 'lines',
-      ...view.axes,
-      name: 'program',
-      hoverinfo: 'skip',
-      showlegend: false,
-      x: program.x_mm,
-      y: program[`${view.up}_mm`],
-      line: { color: theme.unknown, width: 1 },
-    },
-    {
-      type: 'scatter',
-      mode: 'markers',
-      ...view.axes,
-      name: view.name,
-      showlegend: false,
-      x: track.x_mm,
-      y: track[`${view.up}_mm`],
-      marker: { size: 3.5, color: track.speed_mm_per_s, coloraxis: 'coloraxis' },
-      hovertemplate: `%{marker.color:.4g}${thinSpace}mm/s<br>at x %{x:.2f}, ${view.up} %{y:.2f}${thinSpace}mm<extra></extra>`,
-    },
+    lines('program', program.x_mm, program[`${view.up}_mm`], { color: theme.unknown, width: 1 }, null, { showlegend: false, ...view.axes }),
+    colouredPoints(view, track.x_mm, track[`${view.up}_mm`], 3.5, track.speed_mm_per_s, `%{marker.color:.4g}${thinSpace}mm/s`),
   ]);
   return { data, layout: viewsLayout(place, theme, track.x_mm.length > 0 ? 'Speed of the tip (mm/s)' : null) };
 }
@@ -77,28 +57,14 @@ export function cornerFigure(smooth: SmoothDocument, { corners, motions }: Motio
   const moves = movesInView(corner);
   const names = smoothedBy(smooth).map(({ method }) => plain(method));
   const several = names.length > 1;
+  const along = (k: 0 | 1) => moves.flatMap(([from, to]) => [from[k], to[k], null]);
   const data: Trace[] = [
-    {
-      type: 'scatter',
-      mode: 'lines+markers',
-      name: 'program',
-      showlegend: several,
-      hoverinfo: 'skip',
-      x: moves.flatMap(([from, to]) => [from[0], to[0], null]),
-      y: moves.flatMap(([from, to]) => [from[1], to[1], null]),
-      line: { color: theme.unknown, width: 1.5 },
-      marker: { size: 5, color: theme.unknown },
-    },
-    ...motions.map(({ corner_paths }, i) => ({
-      type: 'scatter',
-      mode: 'lines',
-      name: names[i]!,
-      showlegend: several,
-      x: corner_paths[index]!.x_mm,
-      y: corner_paths[index]!.y_mm,
-      line: { color: theme.series[i % theme.series.length], width: 2, dash: dashes[i % dashes.length] },
-      hovertemplate: `%{x:.4f}, %{y:.4f}${thinSpace}mm<extra>${names[i]!}</extra>`,
-    })),
+    lines('program', along(0), along(1), { color: theme.unknown, width: 1.5 }, null, { mode: 'lines+markers', showlegend: several, marker: { size: 5, color: theme.unknown } }),
+    ...motions.map(({ corner_paths }, i) => {
+      const { x_mm, y_mm } = corner_paths[index]!;
+      const line = { color: seriesColour(theme, i), width: 2, dash: dashes[i % dashes.length] };
+      return lines(names[i]!, x_mm, y_mm, line, `%{x:.4f}, %{y:.4f}${thinSpace}mm<extra>${names[i]!}</extra>`, { showlegend: several });
+    }),
   ];
   const r = corner.radius_mm;
   const square = Math.max(200, Math.min(420, width - 90));

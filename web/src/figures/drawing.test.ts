@@ -23,6 +23,7 @@ function segment(part: Segment['part'], length_mm: number, diameter_mm: number, 
     inner_diameter_mm: 0,
     youngs_modulus_gpa: 200,
     density_kg_per_m3: 7800,
+    poissons_ratio: 0.3,
     loss_factor: 0,
     beam: 'timoshenko',
     ...more,
@@ -36,7 +37,6 @@ const joint: Joint = {
   rotational_damping_n_m_s_per_rad: 0,
   cross_stiffness_n_per_rad: 0,
   points: 1,
-  insertion_length_mm: null,
   shank: [],
 };
 

@@ -6,6 +6,7 @@ import { breakJumps, frfFigure, prefersLogFrequency } from './frf';
 import { polarFigure, rings, toPlane } from './polar';
 import { harmonics, spectrumFigure } from './spectrum';
 import { light, logTicks, plain, rpm } from './theme';
+import { sampleReport } from '../report_sample';
 
 describe('texts', () => {
   it('group thousands', () => expect([rpm(9999.6), rpm(8000), rpm(123456)]).toEqual(['10\u202f000\u202frpm', '8000\u202frpm', '123\u202f456\u202frpm']));
@@ -138,7 +139,8 @@ describe('polar plot', () => {
   });
 });
 
-const recording = {
+const recording: Recording = {
+  ...sampleReport().recordings![0]!,
   file: 'cut.csv',
   rotation_hz: 100,
   tooth_passing_hz: 300,
@@ -151,7 +153,7 @@ const recording = {
     { frequency_hz: 417, amplitude: 2, kind: 'chatter', text: 'mode 1' },
     { frequency_hz: 450, amplitude: 1, kind: 'unexplained', text: '?' },
   ],
-} as Recording;
+};
 
 describe('spectrum', () => {
   it('counts each harmonic as rotation or tooth passing, not both', () => {
@@ -183,7 +185,7 @@ describe('fit', () => {
       { order: 2, frequency_hz: 10, stable: false },
       { order: 4, frequency_hz: 10, stable: true },
       { order: 4, frequency_hz: 50, stable: false },
-    ];
+    ].map((pole) => ({ ...pole, damping_ratio: 0.02 }));
     const [moving, stable] = stabilisationFigure(poles, light).data;
     expect(moving!['x']).toEqual([10, 50]);
     expect(stable!['y']).toEqual([4]);

@@ -1,10 +1,17 @@
 import { describe, expect, it } from 'vitest';
-import type { Block, Forces, Program, Revolution, SpindleRotation } from '../documents';
-import { engagementFigure, gammaFigure, highest, programFigure, revolutionFigure, ringEdges, withinTurn } from './forces';
+import type { Block, Program, Revolution, SpindleRotation } from '../documents';
+import { engagementFigure, gammaFigure, programFigure, revolutionFigure, ringEdges, withinTurn } from './forces';
+import { sampleReport } from '../report_sample';
+import { isProgram, isRevolution } from '../views';
+import { highest } from './rows';
 import { dark, light } from './theme';
 import { frame, marks, moves, placesOf, trackFigure } from './track';
 
-const revolution = {
+const { vibrating_fx_n: _x, vibrating_fy_n: _y, vibrating_fz_n: _z, ...forces } = sampleReport().forces!;
+if (!isRevolution(forces) || !isProgram(forces)) throw new Error('The sample has no forces.');
+
+const revolution: Revolution = {
+  ...forces,
   force_on: 'workpiece',
   rotation_deg: [0, 180, 360],
   fx_n: [1, 2, 1],
@@ -12,11 +19,11 @@ const revolution = {
   fz_n: [5, 6, 5],
   torque_by_rotation_n_m: [0.1, 0.2, 0.1],
   engagement: [
-    { height_mm: 0.1, position_deg: 20, arcs_deg: [[0, 120]] },
-    { height_mm: 0.3, position_deg: null, arcs_deg: [[300, 400]] },
-    { height_mm: 0.7, position_deg: 40, arcs_deg: [] },
+    { height_mm: 0.1, radius_mm: 1, position_deg: 20, arcs_deg: [[0, 120]] },
+    { height_mm: 0.3, radius_mm: 2, position_deg: 30, arcs_deg: [[300, 400]] },
+    { height_mm: 0.7, radius_mm: 3, position_deg: 40, arcs_deg: [] },
   ],
-} as unknown as Forces & Revolution;
+};
 
 describe('forces over a revolution', () => {
   it('have the three components above, each with a dash of its own, and the torque below', () => {
@@ -55,32 +62,34 @@ describe('engagement map', () => {
     expect((bars!['x'] as unknown[]).slice(0, 6)).toEqual([0, 120, 120, 0, 0, null]);
     expect(middles!['x']).toEqual([60, 330, 20]);
     expect((middles!['text'] as string[])[0]).toContain('κ 20.0°<br>from 0.0° to 120.0°');
-    expect((middles!['text'] as string[])[1]).not.toContain('κ');
     const axis = engagementFigure(revolution.engagement, light, true).layout['xaxis'] as { tickvals: number[]; ticktext: string[] };
     expect(axis.tickvals).toEqual([0, 90, 180, 270, 360]);
     expect(axis.ticktext[1]).toBe('90<br>feed');
   });
 });
 
+const block: Block = { ...forces.blocks[0]!, y_mm: 0 };
+
 /** Blocks from (0, 0, 20), the first and the last in air. */
-const track = [
+const track: Block[] = [
   { x_mm: 0, z_mm: 20, peak_f_n: 0, cuts: false },
   { x_mm: 0, z_mm: 0, peak_f_n: 0, cuts: false },
   { x_mm: 10, z_mm: 0, peak_f_n: 100, cuts: true },
   { x_mm: 10.001, z_mm: 0, peak_f_n: 300, cuts: true },
-  { x_mm: 50, z_mm: 5, peak_f_n: null, cuts: false },
-].map((block, i) => ({ ...block, y_mm: 0, block: i + 1, line: i + 11 }) as Block);
+  { x_mm: 50, z_mm: 5, peak_f_n: 0, cuts: false },
+].map((one, i) => ({ ...block, ...one, block: i + 1, line: i + 11 }));
 
-const program = {
+const program: Program = {
+  ...forces,
   torque_limit_n_m: 0.25,
   power_time_s: 0.1,
   power_limit_w: 4000,
   blocks: [
     { path_mm: 5, peak_f_n: 10, revolution_torque_n_m: 0.1, peak_torque_n_m: 0.2, sustained_power_w: 100, peak_deflection_um: 1 },
-    { path_mm: 10, peak_f_n: null, revolution_torque_n_m: 0.2, peak_torque_n_m: 0.3, sustained_power_w: 200, peak_deflection_um: 2 },
+    { path_mm: 10, peak_f_n: 0, revolution_torque_n_m: 0.2, peak_torque_n_m: 0.3, sustained_power_w: 200, peak_deflection_um: 2 },
     { path_mm: 30, peak_f_n: 30, revolution_torque_n_m: 0.3, peak_torque_n_m: 0.6, sustained_power_w: 300, peak_deflection_um: 3 },
-  ].map((block, i) => ({ ...block, block: i + 1, line: i + 11 }) as Block),
-} as Program;
+  ].map((one, i) => ({ ...block, ...one, block: i + 1, line: i + 11 })),
+};
 
 /** The program with something else in each of its blocks. */
 const withBlocks = (change: Partial<Block>): Program => ({ ...program, blocks: program.blocks.map((block) => ({ ...block, ...change })) });
@@ -105,7 +114,7 @@ describe('forces along a program', () => {
   });
   it('hold a block’s value over its length, from the start of the path', () => {
     const [force] = programFigure(program, light).data;
-    expect(force).toMatchObject({ x: [0, 5, 10, 30], y: [10, 10, null, 30], line: { shape: 'vh' } });
+    expect(force).toMatchObject({ x: [0, 5, 10, 30], y: [10, 10, 0, 30], line: { shape: 'vh' } });
     expect(force!['customdata']).toEqual([[1, 11], [1, 11], [2, 12], [3, 13]]);
   });
   it('show a limit as a line, or in words where the line would flatten the curve', () => {
@@ -117,7 +126,7 @@ describe('forces along a program', () => {
   });
   it('have a finite range where nothing is known', () => {
     expect(highest([null, null])).toBe(0);
-    const none = programFigure(withBlocks({ peak_f_n: null }), light);
+    const none = programFigure(withBlocks({ peak_f_n: 0 }), light);
     expect((none.layout['yaxis'] as { range: number[] }).range).toEqual([0, 1.12]);
   });
 });
@@ -179,6 +188,8 @@ describe('deflection over γ', () => {
   const sweep: SpindleRotation = {
     rotation_deg: [-180, 0, 180],
     deflection_um: [null, 20, 40],
+    along_normal_um: [null, 14, 28],
+    limit_distance_deg: [null, 60, 60],
     condition_number: [null, 5, 9],
     best_deg: 0,
     best_deflection_um: 20,

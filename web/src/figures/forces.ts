@@ -1,7 +1,7 @@
-import type { Block, Forces, Num, Program, Revolution, Ring, SpindleRotation } from '../documents';
+import type { Block, Num, Program, Revolution, Ring, SpindleRotation } from '../documents';
 import { valueAt } from '../views';
-import { limitMarks, reach, suffix } from './rows';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { highest, limitMarks, reach, suffix } from './rows';
+import { axis, layout, lines, points, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const turnAxis = 'Rotation φ from +y (°)';
 
@@ -16,34 +16,17 @@ export function forceCurves(turn: Revolution): [number[], number[], number[]] {
 }
 
 /** Fx, Fy and Fz over the rotation, the torque below. */
-export function revolutionFigure(turn: Forces & Revolution, theme: Theme, narrow = false): Figure {
+export function revolutionFigure(turn: Revolution, theme: Theme, narrow = false): Figure {
   const x = turn.rotation_deg;
   const [fx, fy, fz] = forceCurves(turn);
-  const line = (name: string, y: number[], index: number, dash: string): Trace => ({
-    type: 'scatter',
-    mode: 'lines',
-    name,
-    x,
-    y,
-    line: { color: theme.series[index], width: 2, dash },
-    hovertemplate: `%{y:.4g}${thinSpace}N at %{x:.1f}°<extra>${name}</extra>`,
-  });
+  const line = (name: string, y: number[], index: number, dash: string) =>
+    lines(name, x, y, { color: theme.series[index], width: 2, dash }, `%{y:.4g}${thinSpace}N at %{x:.1f}°<extra>${name}</extra>`);
   return {
     data: [
       line('Fx', fx, 0, 'solid'),
       line('Fy', fy, 1, '7px,3px'),
       line('Fz', fz, 2, '2px,2px'),
-      {
-        type: 'scatter',
-        mode: 'lines',
-        name: 'torque',
-        showlegend: false,
-        x,
-        y: turn.torque_by_rotation_n_m,
-        yaxis: 'y2',
-        line: { color: theme.text, width: 2 },
-        hovertemplate: `%{y:.4g}${thinSpace}N·m at %{x:.1f}°<extra>torque</extra>`,
-      },
+      lines('torque', x, turn.torque_by_rotation_n_m, { color: theme.text, width: 2 }, `%{y:.4g}${thinSpace}N·m at %{x:.1f}°<extra>torque</extra>`, { yaxis: 'y2', showlegend: false }),
     ],
     layout: layout(theme, 460, {
       hovermode: 'x',
@@ -84,14 +67,13 @@ export function engagementFigure(rings: Ring[], theme: Theme, narrow = false): F
   const middle = { x: [] as number[], y: [] as number[], text: [] as string[] };
   rings.forEach((ring, i) => {
     const [low, high] = edges[i]!;
-    const position = ring.position_deg === null ? '' : `, κ ${ring.position_deg.toFixed(1)}°`;
     for (const [entry, exit] of ring.arcs_deg) {
       for (const [from, to] of withinTurn(entry, exit)) {
         outline.x.push(from, to, to, from, from, null);
         outline.y.push(low, low, high, high, low, null);
         middle.x.push((from + to) / 2);
         middle.y.push(ring.height_mm);
-        middle.text.push(`${ring.height_mm.toPrecision(3)}${thinSpace}mm${position}<br>from ${entry.toFixed(1)}° to ${exit.toFixed(1)}°`);
+        middle.text.push(`${ring.height_mm.toPrecision(3)}${thinSpace}mm, κ ${ring.position_deg.toFixed(1)}°<br>from ${entry.toFixed(1)}° to ${exit.toFixed(1)}°`);
       }
     }
   });
@@ -99,25 +81,8 @@ export function engagementFigure(rings: Ring[], theme: Theme, narrow = false): F
   const ticks = directions.filter(([at]) => !narrow || at % 90 === 0);
   return {
     data: [
-      {
-        type: 'scatter',
-        mode: 'lines',
-        ...outline,
-        fill: 'toself',
-        fillcolor: theme.accent,
-        opacity: 0.85,
-        line: { color: theme.panel, width: 0.8 },
-        hoverinfo: 'skip',
-      },
-      {
-        type: 'scatter',
-        mode: 'markers',
-        x: middle.x,
-        y: middle.y,
-        text: middle.text,
-        marker: { size: 14, color: 'rgba(0,0,0,0)' },
-        hovertemplate: '%{text}<extra></extra>',
-      },
+      lines('', outline.x, outline.y, { color: theme.panel, width: 0.8 }, null, { fill: 'toself', fillcolor: theme.accent, opacity: 0.85 }),
+      points('', middle.x, middle.y, { size: 14, color: 'rgba(0,0,0,0)' }, '%{text}', { text: middle.text }),
     ],
     layout: layout(theme, 340, {
       hovermode: 'closest',
@@ -137,11 +102,6 @@ interface Row {
   unit: string;
   lines: { name: string; y: Num[]; faint?: boolean }[];
   limit: number | null;
-}
-
-/** Highest of the numbers; 0 where there is none. */
-export function highest(values: Num[]): number {
-  return values.reduce<number>((most, value) => Math.max(most, value ?? 0), 0);
 }
 
 /** Whether a robot bends along the program. */
@@ -174,7 +134,6 @@ function programRows({ blocks, torque_limit_n_m: torqueLimit, power_limit_w: pow
 export function programFigure(program: Program, theme: Theme): Figure {
   const { blocks } = program;
   const rows = programRows(program);
-  const share = 1 / rows.length;
   const x = [0, ...blocks.map((block) => block.path_mm)];
   const places = blocks.map(({ block, line }) => [block, line]);
   const first = places[0] ?? [null, null];
@@ -186,18 +145,9 @@ export function programFigure(program: Program, theme: Theme): Figure {
     const most = Math.max(...row.lines.map((line) => highest(line.y))) || 1; // nothing cut: any range will do
     const inside = row.limit !== null && row.limit <= reach * most;
     for (const line of row.lines) {
-      data.push({
-        type: 'scatter',
-        mode: 'lines',
-        name: line.name,
-        showlegend: row.lines.length > 1,
-        x,
-        y: [line.y[0] ?? null, ...line.y],
-        yaxis: `y${suffix(index)}`,
-        customdata: [first, ...places],
-        line: { shape: 'vh', width: line.faint ? 1 : 1.5, color: line.faint ? theme.measured : theme.accent },
-        hovertemplate: `%{y:.4g}${thinSpace}${row.unit} in block %{customdata[0]}, line %{customdata[1]}<extra>${line.name}</extra>`,
-      });
+      const style = { shape: 'vh', width: line.faint ? 1 : 1.5, color: line.faint ? theme.measured : theme.accent };
+      const hover = `%{y:.4g}${thinSpace}${row.unit} in block %{customdata[0]}, line %{customdata[1]}<extra>${line.name}</extra>`;
+      data.push(lines(line.name, x, [line.y[0] ?? null, ...line.y], style, hover, { showlegend: row.lines.length > 1, yaxis: `y${suffix(index)}`, customdata: [first, ...places] }));
     }
     if (row.limit !== null) {
       const text = `spindle's limit ${Number(row.limit.toPrecision(3))} ${row.unit}${inside ? '' : ', above this plot'}`;
@@ -205,9 +155,8 @@ export function programFigure(program: Program, theme: Theme): Figure {
       shapes.push(...mark.shapes);
       annotations.push(mark.annotation);
     }
-    const top = 1 - index * share;
     axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
-      domain: [Math.max(0, top - share + 0.045), top],
+      domain: stacked(index, rows.length, 0.045),
       range: [0, 1.12 * Math.max(most, inside ? row.limit! * 1.06 : 0)],
       nticks: 4,
       exponentformat: 'none',
@@ -230,49 +179,18 @@ export function programFigure(program: Program, theme: Theme): Figure {
 export function gammaFigure(sweep: SpindleRotation, theme: Theme, narrow = false): Figure {
   const x = sweep.rotation_deg;
   const conditioned = sweep.condition_number.some((value) => value !== null);
-  const mark = (name: string, at: Num, y: Num, symbol: string, colour: string): Trace[] =>
-    at === null || y === null
-      ? []
-      : [
-          {
-            type: 'scatter',
-            mode: 'markers',
-            name,
-            x: [at],
-            y: [y],
-            marker: { symbol, size: 12, color: colour, line: { width: 2, color: colour } },
-            hovertemplate: `${name}: %{y:.4g}${thinSpace}µm at γ = %{x:.4g}°<extra></extra>`,
-          },
-        ];
+  const bent = `%{y:.4g}${thinSpace}µm at γ = %{x:.4g}°`;
+  const mark = (name: string, at: Num, y: Num, symbol: string, color: string): Trace[] =>
+    at === null || y === null ? [] : [points(name, [at], [y], { symbol, size: 12, color, line: { width: 2, color } }, `${name}: ${bent}`)];
   const data: Trace[] = [
-    {
-      type: 'scatter',
-      mode: 'lines+markers', // a rotation alone between two out of reach is a point
-      name: 'deflection',
-      showlegend: false,
-      x,
-      y: sweep.deflection_um,
-      connectgaps: false,
-      line: { color: theme.accent, width: 2 },
-      marker: { size: 3, color: theme.accent },
-      hovertemplate: `%{y:.4g}${thinSpace}µm at γ = %{x:.4g}°<extra></extra>`,
-    },
+    // A rotation alone between two out of reach is a point.
+    lines('deflection', x, sweep.deflection_um, { color: theme.accent, width: 2 }, bent, { mode: 'lines+markers', showlegend: false, connectgaps: false, marker: { size: 3, color: theme.accent } }),
     ...mark('used', sweep.used_deg, valueAt(x, sweep.deflection_um, sweep.used_deg), 'circle-open', theme.text),
     ...mark('best', sweep.best_deg, sweep.best_deflection_um, 'diamond', theme.stable),
   ];
   if (conditioned) {
-    data.push({
-      type: 'scatter',
-      mode: 'lines',
-      name: 'condition number',
-      showlegend: false,
-      x,
-      y: sweep.condition_number,
-      yaxis: 'y2',
-      connectgaps: false,
-      line: { color: theme.muted, width: 2 },
-      hovertemplate: 'condition number %{y:.4g} at γ = %{x:.4g}°<extra></extra>',
-    });
+    const style = { color: theme.muted, width: 2 };
+    data.push(lines('condition number', x, sweep.condition_number, style, 'condition number %{y:.4g} at γ = %{x:.4g}°', { showlegend: false, yaxis: 'y2', connectgaps: false }));
   }
   const [from, to] = [x[0] ?? -180, x[x.length - 1] ?? 180];
   const wide = to - from > 180;

@@ -1,5 +1,5 @@
 import type { Frf, Mode } from '../views';
-import { axis, layout, logTicks, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, layout, lines, logTicks, plain, points, shadedBetween, thinSpace, verticalLine, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Breaks a phase curve where it jumps by more than half a turn, so that no line crosses the plot. */
 export function breakJumps(frequency: number[], phase: (number | null)[]): { x: number[]; y: (number | null)[] } {
@@ -27,8 +27,8 @@ function axisOf({ predicted, measured, fitted }: Frf): number[] {
 
 /** Lowest frequency above zero, and the highest. */
 function band(frf: Frf): [number, number] {
-  const lines = axisOf(frf);
-  return [lines.find((f) => f > 0) ?? 1, lines[lines.length - 1] ?? 1];
+  const frequencies = axisOf(frf);
+  return [frequencies.find((f) => f > 0) ?? 1, frequencies[frequencies.length - 1] ?? 1];
 }
 
 /** A logarithmic axis serves where the band spans more than a decade and a half. */
@@ -39,19 +39,7 @@ export function prefersLogFrequency(frf: Frf): boolean {
 
 function untrusted(frf: Frf, theme: Theme): Layout[] {
   const [from, to] = band(frf);
-  const shade = (x0: number, x1: number) => ({
-    type: 'rect',
-    xref: 'x',
-    yref: 'paper',
-    x0,
-    x1,
-    y0: 0,
-    y1: 1,
-    fillcolor: theme.muted,
-    opacity: 0.13,
-    line: { width: 0 },
-    layer: 'below',
-  });
+  const shade = (from: number, to: number) => shadedBetween(from, to, theme.muted, 0.13);
   const bands: Layout[] = [];
   if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(shade(from, Math.min(to, frf.trusted_from_hz)));
   if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(shade(Math.max(from, frf.trusted_to_hz), to));
@@ -60,27 +48,17 @@ function untrusted(frf: Frf, theme: Theme): Layout[] {
 
 /** Where the prediction is not to be trusted: suspect bands are tinted, unreliable ones stand between dotted lines. */
 function marked(frf: Frf, theme: Theme): { shapes: Layout[]; keys: Trace[] } {
-  const whole = { type: 'rect', xref: 'x', yref: 'paper', y0: 0, y1: 1, layer: 'below' };
-  const place = ([x0, x1]: [number, number]) => ({ x0: Math.max(x0, band(frf)[0]), x1 });
-  const suspect = frf.suspect_bands_hz.map((part) => ({ ...whole, ...place(part), fillcolor: theme.borderline, opacity: 0.25, line: { width: 0 } }));
-  const unreliable = frf.unreliable_bands_hz.map((part) => ({ ...whole, ...place(part), fillcolor: 'rgba(0,0,0,0)', line: { width: 1.5, dash: 'dot', color: theme.borderline } }));
-  const key = (name: string, symbol: string) => ({
-    type: 'scatter',
-    mode: 'markers',
-    x: [null],
-    y: [null],
-    name,
-    hoverinfo: 'skip',
-    marker: { symbol, size: 12, color: theme.borderline, line: { width: 1.5, color: theme.borderline } },
-  });
+  const shade = ([from, to]: [number, number], fill: string, opacity: number) => shadedBetween(Math.max(from, band(frf)[0]), to, fill, opacity);
+  const suspect = frf.suspect_bands_hz.map((part) => shade(part, theme.borderline, 0.25));
+  const unreliable = frf.unreliable_bands_hz.map((part) => ({ ...shade(part, 'rgba(0,0,0,0)', 1), line: { width: 1.5, dash: 'dot', color: theme.borderline } }));
+  const key = (name: string, symbol: string) => points(name, [null], [null], { symbol, size: 12, color: theme.borderline, line: { width: 1.5, color: theme.borderline } }, null);
   const keys = [...(suspect.length > 0 ? [key(energy, 'square')] : []), ...(unreliable.length > 0 ? [key(amplified, 'square-open')] : [])];
   return { shapes: [...suspect, ...unreliable], keys };
 }
 
 function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): { shapes: Layout[]; annotations: Layout[] } {
-  const lines = axisOf(frf);
-  const from = lines[0] ?? 0;
-  const to = lines[lines.length - 1] ?? 0;
+  const frequencies = axisOf(frf);
+  const [from, to] = [frequencies[0] ?? 0, frequencies[frequencies.length - 1] ?? 0];
   // The FRFs are those of the tool.
   const inside = modes.filter((mode) => mode.mode_of === 'tool' && mode.frequency_hz >= from && mode.frequency_hz <= to);
   const place = (f: number) => (logarithmic ? Math.log10(f) : f);
@@ -106,17 +84,7 @@ function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme):
         hovertext: `mode ${mode.mode}: ${mode.frequency_hz} Hz`,
       };
     });
-  const shapes = inside.map((mode) => ({
-    type: 'line',
-    xref: 'x',
-    yref: 'paper',
-    x0: mode.frequency_hz,
-    x1: mode.frequency_hz,
-    y0: 0,
-    y1: 1,
-    line: { color: theme.unknown, width: 1, dash: '1px,3px' },
-    layer: 'below',
-  }));
+  const shapes = inside.map((mode) => verticalLine(mode.frequency_hz, { color: theme.unknown, width: 1, dash: '1px,3px' }, { layer: 'below' }));
   return { shapes, annotations };
 }
 
@@ -128,34 +96,18 @@ function curves(frf: Frf, theme: Theme): Trace[] {
     const curve = frf[which];
     if (curve === null) return;
     const { frequency_hz: frequency } = curve;
-    const phase = breakJumps(frequency, curve.phase_deg);
-    const common = { type: 'scatter', mode: 'lines', name: which, legendgroup: which, line };
+    const { x, y } = breakJumps(frequency, curve.phase_deg);
     data.push(
-      { ...common, x: frequency, y: curve.magnitude, yaxis: 'y', hovertemplate: `${magnitudeText}<extra>${which}</extra>` },
-      {
-        ...common,
-        ...phase,
-        yaxis: 'y2',
-        showlegend: false,
-        hovertemplate: `%{y:.1f}° at %{x:.2f}${thinSpace}Hz<extra>${which}</extra>`,
-      },
+      lines(which, frequency, curve.magnitude, line, `${magnitudeText}<extra>${which}</extra>`, { legendgroup: which, yaxis: 'y' }),
+      lines(which, x, y, line, `%{y:.1f}° at %{x:.2f}${thinSpace}Hz<extra>${which}</extra>`, { legendgroup: which, yaxis: 'y2', showlegend: false }),
     );
   };
   add('measured', { color: theme.measured, width: 3.5 });
   add('predicted', { color: theme.accent, width: 2.2 });
   add('fitted', { color: theme.chatter, width: 1.5, ...(frf.predicted === null ? {} : { dash: '4px,3px' }) });
   if (frf.coherence !== null) {
-    data.push({
-      type: 'scatter',
-      mode: 'lines',
-      name: 'coherence',
-      showlegend: false,
-      x: frf.coherence.frequency_hz,
-      y: frf.coherence.values,
-      yaxis: 'y3',
-      line: { color: theme.stable, width: 1.2 },
-      hovertemplate: `%{y:.3f} at %{x:.2f}${thinSpace}Hz<extra>coherence</extra>`,
-    });
+    const { frequency_hz: frequency, values } = frf.coherence;
+    data.push(lines('coherence', frequency, values, { color: theme.stable, width: 1.2 }, `%{y:.3f} at %{x:.2f}${thinSpace}Hz<extra>coherence</extra>`, { yaxis: 'y3', showlegend: false }));
   }
   return data;
 }

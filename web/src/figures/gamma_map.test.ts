@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import type { GammaMap } from '../decision';
+import type { GammaMap } from '../documents';
 import { gammaFigure, scaleEnd } from './gamma_map';
 import { dark, light } from './theme';
 
@@ -12,7 +12,7 @@ const map: GammaMap = {
     [0.2, 0.3, 0.1],
   ],
   chosen_deg: [0, 0, 0],
-  programmed_deg: [-10, -10, null],
+  programmed_deg: [-10, -10, -10],
   least_margin: 0.2,
 };
 
@@ -36,7 +36,7 @@ it('has zero in the middle of its colours, whatever the margins are', () => {
 it('names lines and the places where the robot cannot stand', () => {
   expect(names(map)).toEqual(['margin 0', 'margin 0.2', 'as programmed', 'chosen', 'no posture']);
   expect(names(map, true)).toEqual(['as programmed', 'chosen', 'no posture']);
-  expect(names({ ...map, least_margin: null, margin: [[0, 0, 0], [0, 0, 0]], programmed_deg: [null, null, null] })).toEqual(['margin 0', 'chosen']);
+  expect(names({ ...map, least_margin: null, margin: [[0, 0, 0], [0, 0, 0]] })).toEqual(['margin 0', 'as programmed', 'chosen']);
   expect(gammaFigure(map, null, light, false).layout['plot_bgcolor']).toBe(light.unknown);
 });
 

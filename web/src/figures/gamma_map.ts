@@ -1,7 +1,6 @@
-import type { GammaMap } from '../decision';
-import type { Num } from '../documents';
+import type { GammaMap, Num } from '../documents';
 import { rangeOf } from '../path_views';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, barBelow, diverging, layout, lines, points, thinSpace, verticalLine, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Where the scale ends on both sides of zero: how far below it a cut chatters matters less than how far above it stays. */
 export function scaleEnd(margin: Num[][]): number {
@@ -22,10 +21,9 @@ function scaleTicks(margin: Num[][], end: number): Layout {
 /** A line over the map with an edge that keeps it apart from every colour. */
 function over(map: GammaMap, gamma: Num[], name: string, colour: string, dash: string, theme: Theme): Trace[] {
   if (!gamma.some((value) => value !== null)) return [];
-  const line = { type: 'scatter', mode: 'lines', x: map.path_mm, y: gamma, connectgaps: false };
   return [
-    { ...line, line: { color: theme.panel, width: 5 }, hoverinfo: 'skip', showlegend: false },
-    { ...line, name, line: { color: colour, width: 2.4, dash }, hovertemplate: `${name}: γ %{y:.1f}°<extra></extra>` },
+    lines(name, map.path_mm, gamma, { color: theme.panel, width: 5 }, null, { connectgaps: false, showlegend: false }),
+    lines(name, map.path_mm, gamma, { color: colour, width: 2.4, dash }, `${name}: γ %{y:.1f}°`, { connectgaps: false }),
   ];
 }
 
@@ -48,8 +46,7 @@ function level(map: GammaMap, at: number, dash: string, theme: Theme, named: boo
 /** The margin over path and γ, its lines at zero and at what is asked for, γ as programmed and as chosen. `selected` is a column. */
 export function gammaFigure(map: GammaMap, selected: number | null, theme: Theme, narrow: boolean): Figure {
   const end = scaleEnd(map.margin);
-  const at = selected === null ? null : map.path_mm[selected]!;
-  const shapes: Layout[] = at === null ? [] : [{ type: 'line', xref: 'x', yref: 'paper', x0: at, x1: at, y0: 0, y1: 1, line: { color: theme.text, width: 2 } }];
+  const shapes = selected === null ? [] : [verticalLine(map.path_mm[selected]!, { color: theme.text, width: 2 })];
   const data: Trace[] = [
     {
       type: 'heatmap',
@@ -61,22 +58,8 @@ export function gammaFigure(map: GammaMap, selected: number | null, theme: Theme
       zsmooth: false,
       hoverongaps: false,
       customdata: map.margin.map(() => map.block),
-      colorscale: [
-        [0, theme.chatter],
-        [0.5, theme.panel],
-        [1, theme.accent],
-      ],
-      colorbar: {
-        title: { text: 'Stability margin (below 0: chatter)', side: 'top', font: { size: 12 } },
-        orientation: 'h',
-        thickness: 10,
-        len: 1,
-        x: 0.5,
-        y: narrow ? -0.24 : -0.18,
-        yanchor: 'top',
-        outlinewidth: 0,
-        ...scaleTicks(map.margin, end),
-      },
+      colorscale: diverging(theme.chatter, theme, theme.accent),
+      colorbar: barBelow('Stability margin (below 0: chatter)', narrow ? -0.24 : -0.18, scaleTicks(map.margin, end)),
       hovertemplate: `block %{customdata}, %{x:.1f}${thinSpace}mm, γ %{y:.1f}°: margin %{z:.3f}<extra></extra>`,
     },
     level(map, 0, 'solid', theme, !narrow),
@@ -84,7 +67,7 @@ export function gammaFigure(map: GammaMap, selected: number | null, theme: Theme
   if (map.least_margin !== null && map.least_margin > 0) data.push(level(map, map.least_margin, 'dot', theme, !narrow));
   data.push(...over(map, map.programmed_deg, 'as programmed', theme.text, '7px,4px', theme), ...over(map, map.chosen_deg, 'chosen', theme.overlay, 'solid', theme));
   if (map.margin.some((row) => row.includes(null))) {
-    data.push({ type: 'scatter', mode: 'markers', name: 'no posture', x: [null], y: [null], marker: { symbol: 'square', size: 11, color: theme.unknown }, hoverinfo: 'skip' });
+    data.push(points('no posture', [null], [null], { symbol: 'square', size: 11, color: theme.unknown }, null));
   }
   return {
     data,

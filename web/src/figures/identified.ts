@@ -1,37 +1,38 @@
-import type { Num, Slot, StiffnessDocument } from '../documents';
+import type { Slot, StiffnessDocument } from '../documents';
 import { slotGroups } from '../verb_views';
+import { magnitude } from './rows';
 import { dashes } from './smooth';
-import { axis, directionSeries, layout, logTicks, plain, thinSpace, type Figure, type Theme, type Trace } from './theme';
+import { axis, directionSeries, layout, lines, logTicks, plain, points, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const directions = ['x', 'y', 'z'] as const;
 const symbols = ['circle', 'square', 'diamond'] as const;
+
+function feeds(slots: Slot[]): number[] {
+  return slots.map((slot) => slot.feed_per_tooth_mm);
+}
+
+function named({ line }: { line: number }): string {
+  return `line ${line}`;
+}
+
+/** A direction's own mark. */
+function markOf(i: number, theme: Theme): Layout {
+  return { symbol: symbols[i], size: 8, color: theme.series[directionSeries[i]!] };
+}
 
 /** Mean force over feed: measured as points, fitted as lines, one a depth and speed. */
 export function slotsFigure(slots: Slot[], theme: Theme): Figure {
   const groups = slotGroups(slots);
   const data: Trace[] = directions.flatMap((name, i) => {
     const color = theme.series[directionSeries[i]!]!;
-    const common = { type: 'scatter', legendgroup: name };
-    const measured = {
-      ...common,
-      mode: 'markers',
-      name: `${name}, measured`,
-      x: slots.map((slot) => slot.feed_per_tooth_mm),
-      y: slots.map((slot) => slot.force_n[i]!),
-      text: slots.map((slot) => `line ${slot.line}`),
-      hovertemplate: `%{y:.4g}${thinSpace}N at %{x:.4g}${thinSpace}mm, %{text}<extra>${name}</extra>`,
-      marker: { symbol: symbols[i], size: 9, color, line: { width: 1, color: theme.panel } },
-    };
-    const fitted = groups.map(({ label, slots: own }, group) => ({
-      ...common,
-      mode: 'lines',
-      name: `${name}, fitted`,
-      showlegend: group === 0,
-      x: own.map((slot) => slot.feed_per_tooth_mm),
-      y: own.map((slot) => slot.force_n[i]! - slot.residual_n[i]!),
-      line: { color, width: 1.6, dash: dashes[group % dashes.length] },
-      hovertemplate: `fitted %{y:.4g}${thinSpace}N<extra>${plain(label)}</extra>`,
-    }));
+    const marker = { symbol: symbols[i], size: 9, color, line: { width: 1, color: theme.panel } };
+    const hover = `%{y:.4g}${thinSpace}N at %{x:.4g}${thinSpace}mm, %{text}<extra>${name}</extra>`;
+    const measured = points(`${name}, measured`, feeds(slots), slots.map((slot) => slot.force_n[i]!), marker, hover, { legendgroup: name, text: slots.map(named) });
+    const fitted = groups.map(({ label, slots: own }, group) => {
+      const line = { color, width: 1.6, dash: dashes[group % dashes.length] };
+      const force = own.map((slot) => slot.force_n[i]! - slot.residual_n[i]!);
+      return lines(`${name}, fitted`, feeds(own), force, line, `fitted %{y:.4g}${thinSpace}N<extra>${plain(label)}</extra>`, { legendgroup: name, showlegend: group === 0 });
+    });
     return [measured, ...fitted];
   });
   return {
@@ -48,16 +49,9 @@ export function slotsFigure(slots: Slot[], theme: Theme): Figure {
 /** What the fit leaves of every slot, over the feed. */
 export function slotResidualFigure(slots: Slot[], theme: Theme): Figure {
   return {
-    data: directions.map((name, i) => ({
-      type: 'scatter',
-      mode: 'markers',
-      name,
-      x: slots.map((slot) => slot.feed_per_tooth_mm),
-      y: slots.map((slot) => slot.residual_n[i]!),
-      text: slots.map((slot) => `line ${slot.line}`),
-      hovertemplate: `%{y:.4g}${thinSpace}N, %{text}<extra>${name}</extra>`,
-      marker: { symbol: symbols[i], size: 8, color: theme.series[directionSeries[i]!] },
-    })),
+    data: directions.map((name, i) =>
+      points(name, feeds(slots), slots.map((slot) => slot.residual_n[i]!), markOf(i, theme), `%{y:.4g}${thinSpace}N, %{text}<extra>${name}</extra>`, { text: slots.map(named) }),
+    ),
     layout: layout(theme, 300, {
       hovermode: 'closest',
       xaxis: axis(theme, 'Feed per tooth (mm)', { rangemode: 'tozero', exponentformat: 'none' }),
@@ -75,18 +69,11 @@ export function jointsFigure({ joint_stiffness_n_m_per_rad: stiffness, std, unit
   const ends: [number, number] = known.length > 0 ? [0.7 * low, 1.4 * high] : [1, 10];
   return {
     data: [
-      {
-        type: 'scatter',
-        mode: 'markers',
-        name: 'stiffness',
+      points('stiffness', known.map(({ joint }) => joint), known.map(({ value }) => value), { symbol: 'circle', size: 10, color: theme.accent }, `joint %{x}: %{y:.4g}${thinSpace}%{text}`, {
         showlegend: false,
-        x: known.map(({ joint }) => joint),
-        y: known.map(({ value }) => value),
         error_y: { type: 'data', array: known.map(({ spread }) => spread), color: theme.muted, thickness: 1.6, width: 7 },
         text: known.map((joint) => plain(joint.unit)),
-        hovertemplate: `joint %{x}: %{y:.4g}${thinSpace}%{text}<extra></extra>`,
-        marker: { symbol: 'circle', size: 10, color: theme.accent },
-      },
+      }),
     ],
     layout: layout(theme, 340, {
       xaxis: axis(theme, 'Joint', { range: [0.5, stiffness.length + 0.5], tickvals: stiffness.map((_, i) => i + 1) }),
@@ -98,21 +85,14 @@ export function jointsFigure({ joint_stiffness_n_m_per_rad: stiffness, std, unit
 /** Displacement of the tool as the joints predict it, over what was measured; on the line they are equal. */
 export function displacementFigure({ displacement_mm: measured, residual_mm: residual, line }: StiffnessDocument, theme: Theme): Figure {
   const predicted = measured.map((load, k) => load.map((value, i) => value - (residual[k]?.[i] ?? 0)));
-  const all: Num[] = [...measured.flat(), ...predicted.flat()];
-  const most = 1.08 * all.reduce<number>((largest, value) => Math.max(largest, Math.abs(value ?? 0)), 0) || 1;
+  const most = 1.08 * magnitude([...measured.flat(), ...predicted.flat()]) || 1;
   return {
     data: [
-      { type: 'scatter', mode: 'lines', name: 'equal', x: [-most, most], y: [-most, most], line: { color: theme.muted, width: 1.2, dash: '6px,4px' }, hoverinfo: 'skip' },
-      ...directions.map((name, i) => ({
-        type: 'scatter',
-        mode: 'markers',
-        name,
-        x: measured.map((load) => load[i]!),
-        y: predicted.map((load) => load[i]!),
-        text: line.map((at) => `line ${at}`),
-        hovertemplate: `measured %{x:.4g}${thinSpace}mm, predicted %{y:.4g}${thinSpace}mm, %{text}<extra>${name}</extra>`,
-        marker: { symbol: symbols[i], size: 8, color: theme.series[directionSeries[i]!] },
-      })),
+      lines('equal', [-most, most], [-most, most], { color: theme.muted, width: 1.2, dash: '6px,4px' }, null),
+      ...directions.map((name, i) => {
+        const hover = `measured %{x:.4g}${thinSpace}mm, predicted %{y:.4g}${thinSpace}mm, %{text}<extra>${name}</extra>`;
+        return points(name, measured.map((load) => load[i]!), predicted.map((load) => load[i]!), markOf(i, theme), hover, { text: line.map((at) => `line ${at}`) });
+      }),
     ],
     layout: layout(theme, 460, {
       hovermode: 'closest',

@@ -1,8 +1,9 @@
 import { describe, expect, it } from 'vitest';
-import type { Cut, Recommendation } from '../documents';
+import type { Cut } from '../documents';
 import type { Lobes } from '../views';
 import { bandTraces, cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth, visibleLimits } from './lobes';
-import { dark, light, thinSpace } from './theme';
+import { dark, light } from './theme';
+import { sampleReport } from '../report_sample';
 
 const lobes: Lobes = {
   label: 'all modes',
@@ -79,27 +80,17 @@ describe('chatter frequency', () => {
 
 describe('lobes', () => {
   it('mark the recommended point and lead it to both axes', () => {
-    const recommendation = {
-      spindle_speed_rpm: 6000,
-      axial_depth_mm: 1,
-      feed_per_tooth_mm: null,
-      margin: 0.2,
-      removal_rate_mm3_per_s: null,
-      limited_by: 'a < b',
-      window_chatter_frequency_hz: null,
-      mode: null,
-      mode_of: null,
-    } as Recommendation;
+    const recommendation = { ...sampleReport().plan!.recommended!, spindle_speed_rpm: 6000, axial_depth_mm: 1, limited_by: 'a < b' };
     const figure = lobesFigure({ ...input, recommendation, alternatives: [recommendation] }, dark, true);
     const star = figure.data.find((trace) => trace['name'] === 'recommended')!;
     expect(star['x']).toEqual([6000]);
-    expect(star['hovertext']).toEqual([`<b>6000${thinSpace}rpm, 1.00 mm</b><br>limited by a &lt; b`]);
+    expect(star['hovertext']).toEqual([expect.stringMatching(/^<b>6000\u202frpm, 1.00 mm<\/b><br>.* mm³\/s<br>limited by a &lt; b$/)]);
     expect(figure.data.find((trace) => trace['name'] === 'alternatives')!['text']).toEqual(['1']);
     expect(figure.layout['shapes']).toHaveLength(2);
   });
   it('leave out other limits that never come into view', () => {
-    const curve = (label: string, axial_depth_mm: (number | null)[]) => ({ label, spindle_speed_rpm: [4000, 7000], axial_depth_mm });
-    const otherLimits = [curve('torque', [2, 9]), curve('power', [9, 12]), curve('none', [null, null])];
+    const curve = (label: string, axial_depth_mm: number[]) => ({ label, spindle_speed_rpm: [4000, 7000], axial_depth_mm });
+    const otherLimits = [curve('torque', [2, 9]), curve('power', [9, 12])];
     expect(visibleLimits({ ...input, otherLimits }).map((limit) => limit.label)).toEqual(['torque']);
   });
   it('reach to the deepest cut', () => {

@@ -1,6 +1,8 @@
 import type { ChartPoint, Cut, DepthCurve, LimitRow, LobesDocument, Num, Recommendation, Verdict } from '../documents';
+import { modeName } from '../text';
 import type { Lobes } from '../views';
-import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { highest, magnitude } from './rows';
+import { axis, diverging, layout, legendRow, lines, plain, points, rpm, seriesColour, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 export interface LobesInput {
   lobes: Lobes;
@@ -23,7 +25,7 @@ export function stableDepth(lobes: Lobes): number[] {
 
 export function searchedDepth(lobes: Lobes): number {
   if (lobes.searched_depth_mm !== null) return lobes.searched_depth_mm;
-  return lobes.limit_mm.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
+  return highest(lobes.limit_mm);
 }
 
 /** Where the limit lies with all that is uncertain; up to the top where none was found. */
@@ -31,37 +33,19 @@ export function bandTraces(lobes: Lobes, theme: Theme): Trace[] {
   const { band } = lobes;
   if (band === null) return [];
   const top = searchedDepth(lobes);
-  const side = { type: 'scatter', mode: 'lines', x: band.spindle_speed_rpm, line: { width: 0 }, hoverinfo: 'skip' };
-  return [
-    { ...side, y: band.low_mm.map((depth) => depth ?? top), showlegend: false },
-    { ...side, y: band.high_mm.map((depth) => depth ?? top), fill: 'tonexty', fillcolor: theme.bandFill, name: plain(band.label) },
-  ];
+  const side = (depths: Num[], more: Trace) => lines(plain(band.label), band.spindle_speed_rpm, depths.map((depth) => depth ?? top), { width: 0 }, null, more);
+  return [side(band.low_mm, { showlegend: false }), side(band.high_mm, { fill: 'tonexty', fillcolor: theme.bandFill })];
 }
 
 export function limitTraces(lobes: Lobes, theme: Theme, name = 'limit', colour = theme.text): Trace[] {
   return [
-    {
-      type: 'scatter',
-      mode: 'lines',
-      x: lobes.spindle_speed_rpm,
-      y: stableDepth(lobes),
-      fill: 'tozeroy',
-      fillcolor: theme.stableFill,
-      line: { width: 0 },
-      hoverinfo: 'skip',
-      showlegend: false,
-    },
-    {
-      type: 'scatter',
-      mode: 'lines+markers', // a limit at one speed between two without is a point
-      name,
-      x: lobes.spindle_speed_rpm,
-      y: lobes.limit_mm,
+    lines('', lobes.spindle_speed_rpm, stableDepth(lobes), { width: 0 }, null, { fill: 'tozeroy', fillcolor: theme.stableFill, showlegend: false }),
+    // A limit at one speed between two without is a point.
+    lines(name, lobes.spindle_speed_rpm, lobes.limit_mm, { color: colour, width: 2 }, `limit %{y:.3f}${thinSpace}mm at %{x:.0f}${thinSpace}rpm`, {
+      mode: 'lines+markers',
       connectgaps: false,
-      line: { color: colour, width: 2 },
       marker: { color: colour, size: 2 },
-      hovertemplate: `limit %{y:.3f}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra></extra>`,
-    },
+    }),
   ];
 }
 
@@ -76,113 +60,69 @@ function verdictColour(theme: Theme, verdict: Verdict | null): string {
   return verdict === null ? theme.unknown : theme[verdict];
 }
 
+/** Speeds and depths. */
+function placesOf(cuts: { spindle_speed_rpm: number; axial_depth_mm: number }[]): [number[], number[]] {
+  return [cuts.map((cut) => cut.spindle_speed_rpm), cuts.map((cut) => cut.axial_depth_mm)];
+}
+
 function cutText(cut: Cut): string {
-  const lines = [
-    `<b>${rpm(cut.spindle_speed_rpm)}, ${cut.axial_depth_mm} mm</b>`,
-    `made: ${cut.result ?? 'not stated'}`,
-    `predicted: ${cut.predicted ?? 'not known'}`,
-  ];
-  if (cut.limit_depth_mm !== null) lines.push(`limit here: ${cut.limit_depth_mm.toFixed(3)} mm`);
-  if (cut.agrees !== null) lines.push(cut.agrees ? 'as predicted' : '<b>not as predicted</b>');
-  if (cut.note !== '') lines.push(plain(cut.note));
-  return lines.join('<br>');
+  const text = [`<b>${rpm(cut.spindle_speed_rpm)}, ${cut.axial_depth_mm} mm</b>`, `made: ${cut.result ?? 'not stated'}`, `predicted: ${cut.predicted ?? 'not known'}`];
+  if (cut.limit_depth_mm !== null) text.push(`limit here: ${cut.limit_depth_mm.toFixed(3)} mm`);
+  if (cut.agrees !== null) text.push(cut.agrees ? 'as predicted' : '<b>not as predicted</b>');
+  if (cut.note !== '') text.push(plain(cut.note));
+  return text.join('<br>');
 }
 
 /** One trace a result, and rings around the cuts that came out otherwise than predicted. */
 export function cutTraces(cuts: Cut[], theme: Theme): Trace[] {
-  const traces: Trace[] = [];
-  const points = (chosen: Cut[]) => ({
-    type: 'scatter',
-    mode: 'markers',
-    x: chosen.map((cut) => cut.spindle_speed_rpm),
-    y: chosen.map((cut) => cut.axial_depth_mm),
+  const drawn = (name: string, chosen: Cut[], marker: Layout, hover: string | null): Trace[] =>
+    chosen.length === 0 ? [] : [points(`${name} (${chosen.length})`, ...placesOf(chosen), marker, hover, { text: chosen.map(cutText) })];
+  const made = looks.flatMap(({ result, name, symbol }): Trace[] => {
+    const line = { width: result === null ? 1.5 : 1, color: result === null ? theme.unknown : theme.panel };
+    return drawn(name, cuts.filter((cut) => cut.result === result), { symbol, size: 10, color: verdictColour(theme, result), line }, '%{text}');
   });
-  for (const look of looks) {
-    const chosen = cuts.filter((cut) => cut.result === look.result);
-    if (chosen.length === 0) continue;
-    traces.push({
-      ...points(chosen),
-      name: `${look.name} (${chosen.length})`,
-      text: chosen.map(cutText),
-      hovertemplate: '%{text}<extra></extra>',
-      marker: {
-        symbol: look.symbol,
-        size: 10,
-        color: verdictColour(theme, look.result),
-        line: { width: look.result === null ? 1.5 : 1, color: look.result === null ? theme.unknown : theme.panel },
-      },
-    });
-  }
-  const wrong = cuts.filter((cut) => cut.agrees === false);
-  if (wrong.length > 0) {
-    traces.push({
-      ...points(wrong),
-      name: `not as predicted (${wrong.length})`,
-      hoverinfo: 'skip',
-      marker: { symbol: 'circle-open', size: 19, color: theme.text, line: { width: 1.5 } },
-    });
-  }
-  return traces;
+  return [...made, ...drawn('not as predicted', cuts.filter((cut) => cut.agrees === false), { symbol: 'circle-open', size: 19, color: theme.text, line: { width: 1.5 } }, null)];
 }
 
 function recommendationText(r: Recommendation): string {
-  const lines = [`<b>${rpm(r.spindle_speed_rpm)}, ${r.axial_depth_mm.toFixed(2)} mm</b>`];
-  if (r.removal_rate_mm3_per_s !== null) lines.push(`${r.removal_rate_mm3_per_s.toPrecision(3)} mm³/s`);
-  if (r.limited_by !== '') lines.push(`limited by ${plain(r.limited_by)}`);
-  return lines.join('<br>');
+  const text = [`<b>${rpm(r.spindle_speed_rpm)}, ${r.axial_depth_mm.toFixed(2)} mm</b>`, `${r.removal_rate_mm3_per_s.toPrecision(3)} mm³/s`];
+  if (r.limited_by !== '') text.push(`limited by ${plain(r.limited_by)}`);
+  return text.join('<br>');
 }
 
 function recommendationTraces(input: LobesInput, theme: Theme): Trace[] {
   const traces: Trace[] = [];
   if (input.alternatives.length > 0) {
-    traces.push({
-      type: 'scatter',
-      mode: 'markers+text',
-      name: 'alternatives',
-      x: input.alternatives.map((r) => r.spindle_speed_rpm),
-      y: input.alternatives.map((r) => r.axial_depth_mm),
-      text: input.alternatives.map((_, i) => `${i + 1}`),
-      textfont: { size: 10, color: theme.accent },
-      hovertext: input.alternatives.map(recommendationText),
-      hovertemplate: '%{hovertext}<extra>alternative %{text}</extra>',
-      marker: { symbol: 'circle', size: 17, color: theme.panel, line: { width: 1.5, color: theme.accent } },
-    });
+    const disc = { symbol: 'circle', size: 17, color: theme.panel, line: { width: 1.5, color: theme.accent } };
+    traces.push(
+      points('alternatives', ...placesOf(input.alternatives), disc, '%{hovertext}<extra>alternative %{text}</extra>', {
+        mode: 'markers+text',
+        text: input.alternatives.map((_, i) => `${i + 1}`),
+        textfont: { size: 10, color: theme.accent },
+        hovertext: input.alternatives.map(recommendationText),
+      }),
+    );
   }
   const best = input.recommendation;
   if (best !== null) {
-    traces.push({
-      type: 'scatter',
-      mode: 'markers',
-      name: 'recommended',
-      x: [best.spindle_speed_rpm],
-      y: [best.axial_depth_mm],
-      hovertext: [recommendationText(best)],
-      hovertemplate: '%{hovertext}<extra>recommended</extra>',
-      marker: { symbol: 'star', size: 18, color: theme.accent, line: { width: 1, color: theme.panel } },
-    });
+    const star = { symbol: 'star', size: 18, color: theme.accent, line: { width: 1, color: theme.panel } };
+    traces.push(points('recommended', ...placesOf([best]), star, '%{hovertext}<extra>recommended</extra>', { hovertext: [recommendationText(best)] }));
   }
   return traces;
 }
 
 /** Points that were asked for; `height`: where each stands. */
-export function pointTraces(points: ChartPoint[], height: (point: ChartPoint) => Num, theme: Theme): Trace[] {
+export function pointTraces(asked: ChartPoint[], height: (point: ChartPoint) => Num, theme: Theme): Trace[] {
   const looks = [
     { stable: true, name: 'asked for, stable', symbol: 'circle-open', colour: theme.stable },
     { stable: false, name: 'asked for, chatter', symbol: 'x-open', colour: theme.chatter },
   ];
-  return looks.flatMap(({ stable, name, symbol, colour }) => {
-    const chosen = points.filter((point) => point.stable === stable);
+  return looks.flatMap(({ stable, name, symbol, colour }): Trace[] => {
+    const chosen = asked.filter((point) => point.stable === stable);
     if (chosen.length === 0) return [];
-    return {
-      type: 'scatter',
-      mode: 'markers',
-      name,
-      x: chosen.map((point) => point.spindle_speed_rpm),
-      y: chosen.map(height),
-      customdata: chosen.map((point) => point.spectral_radius),
-      hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.4g}: spectral radius %{customdata:.3f}<extra></extra>`,
-      marker: { symbol, size: 11, color: colour, line: { width: 2 } },
-    };
+    const speeds = chosen.map((point) => point.spindle_speed_rpm);
+    const marker = { symbol, size: 11, color: colour, line: { width: 2 } };
+    return [points(name, speeds, chosen.map(height), marker, `%{x:.0f}${thinSpace}rpm, %{y:.4g}: spectral radius %{customdata:.3f}`, { customdata: chosen.map((point) => point.spectral_radius) })];
   });
 }
 
@@ -210,7 +150,7 @@ export function frequencyTraces({ boundary }: Lobes, theme: Theme): Trace[] {
     if (point.chatter_frequency_hz == null) continue;
     const mode = point.mode ?? 0;
     const ofWorkpiece = point.mode_of === 'workpiece';
-    const name = mode === 0 ? 'mode unknown' : `mode ${mode}${ofWorkpiece ? ' of the workpiece' : ''}`;
+    const name = modeName(point) || 'mode unknown';
     const group = groups.get(name) ?? { mode, ofWorkpiece, points: [] };
     group.points.push(point);
     groups.set(name, group);
@@ -232,7 +172,7 @@ export function frequencyTraces({ boundary }: Lobes, theme: Theme): Trace[] {
         `%{customdata[1]:.3f}${thinSpace}mm<extra>${mode > 0 ? name : ''}</extra>`,
       marker: {
         size: 4,
-        color: mode > 0 ? theme.series[(mode - 1) % theme.series.length] : theme.unknown,
+        color: mode > 0 ? seriesColour(theme, mode - 1) : theme.unknown,
         symbol: points.map((point) => (kinds.find((k) => k.kind === point.kind)?.symbol ?? 'circle') + (ofWorkpiece ? '-open' : '')),
       },
     }));
@@ -247,13 +187,13 @@ export function depthTop(input: LobesInput): number {
   const shown: Num[] = [searchedDepth(input.lobes), input.recommendation?.axial_depth_mm ?? 0];
   for (const cut of input.cuts) shown.push(cut.axial_depth_mm);
   for (const point of input.points ?? []) shown.push(point.axial_depth_mm ?? null);
-  return 1.04 * shown.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
+  return 1.04 * highest(shown);
 }
 
 /** The other limits that come into view at all. */
 export function visibleLimits(input: LobesInput): DepthCurve[] {
   const top = depthTop(input);
-  return input.otherLimits.filter((curve) => curve.axial_depth_mm.some((depth) => depth !== null && depth <= top));
+  return input.otherLimits.filter((curve) => curve.axial_depth_mm.some((depth) => depth <= top));
 }
 
 export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): Figure {
@@ -263,15 +203,9 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
   const data: Trace[] = [
     ...bandTraces(lobes, theme),
     ...limitTraces(lobes, theme),
-    ...visibleLimits(input).map((curve, i) => ({
-      type: 'scatter',
-      mode: 'lines',
-      name: plain(curve.label),
-      x: curve.spindle_speed_rpm,
-      y: curve.axial_depth_mm,
-      line: { color: theme.muted, width: 1.5, dash: dashes[i % dashes.length] },
-      hovertemplate: `${plain(curve.label)}: %{y:.3f}${thinSpace}mm<extra></extra>`,
-    })),
+    ...visibleLimits(input).map(({ label, spindle_speed_rpm: speed, axial_depth_mm: depth }, i) =>
+      lines(plain(label), speed, depth, { color: theme.muted, width: 1.5, dash: dashes[i % dashes.length] }, `${plain(label)}: %{y:.3f}${thinSpace}mm`),
+    ),
     ...cutTraces(input.cuts, theme),
     ...pointTraces(input.points ?? [], (point) => point.axial_depth_mm ?? null, theme),
     ...recommendationTraces(input, theme),
@@ -289,7 +223,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
         ? {
             xaxis2: axis(theme, speedAxis, { ...speeds, anchor: 'y2', matches: 'x' }),
             yaxis2: axis(theme, 'Chatter frequency (Hz)', { domain: [0, 0.3], anchor: 'x2' }),
-            legend2: { orientation: 'h', yanchor: 'bottom', y: 0.31, xanchor: 'left', x: 0, font: { size: 12 } },
+            legend2: legendRow({ y: 0.31 }),
           }
         : {}),
       shapes: guides(input.recommendation, left, theme),
@@ -301,15 +235,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
 export function pairFigure(part: Lobes, all: Lobes, cuts: Cut[], theme: Theme): Figure {
   return {
     data: [
-      {
-        type: 'scatter',
-        mode: 'lines',
-        name: 'all modes',
-        x: all.spindle_speed_rpm,
-        y: all.limit_mm,
-        line: { color: theme.unknown, width: 1.2 },
-        hoverinfo: 'skip',
-      },
+      lines('all modes', all.spindle_speed_rpm, all.limit_mm, { color: theme.unknown, width: 1.2 }, null),
       ...limitTraces(part, theme, plain(part.label), theme.accent),
       ...cutTraces(cuts, theme).map((trace) => ({ ...trace, showlegend: false })),
     ],
@@ -341,11 +267,7 @@ export function radiusMap(points: Grid, height: { title: string; unit: string },
         zmid: 1,
         zmin: 0,
         zmax: 2,
-        colorscale: [
-          [0, theme.accent],
-          [0.5, theme.panel],
-          [1, theme.chatter],
-        ],
+        colorscale: diverging(theme.accent, theme, theme.chatter),
         colorbar: { title: { text: 'Spectral radius', side: 'right' }, thickness: 12, outlinewidth: 0 },
         hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${height.unit}: %{z:.3f}<extra></extra>`,
       },
@@ -376,7 +298,7 @@ export function mapFigure({ map }: Lobes, theme: Theme): Figure {
 /** The error of the surface over speed and depth, where a cut is stable. */
 export function surfaceFigure(surface: NonNullable<LobesDocument['surface']>, theme: Theme): Figure {
   const z = surface.surface_location_error_um;
-  const most = z.flat().reduce<number>((largest, value) => Math.max(largest, Math.abs(value ?? 0)), 0) || 1;
+  const most = magnitude(z.flat()) || 1;
   return {
     data: [
       {
@@ -387,11 +309,7 @@ export function surfaceFigure(surface: NonNullable<LobesDocument['surface']>, th
         zmin: -most,
         zmax: most,
         hoverongaps: false,
-        colorscale: [
-          [0, theme.accent],
-          [0.5, theme.panel],
-          [1, theme.chatter],
-        ],
+        colorscale: diverging(theme.accent, theme, theme.chatter),
         colorbar: { title: { text: 'Surface error (µm)', side: 'right' }, thickness: 12, outlinewidth: 0 },
         hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${thinSpace}mm: %{z:.2f}${thinSpace}µm<extra></extra>`,
       },

@@ -2,10 +2,12 @@ import { describe, expect, it } from 'vitest';
 import type { Calibration, Monitor, Num } from '../documents';
 import { rocFigure, scoreFigure, span, spectrogramFigure, states, waveFigure } from './monitor';
 import { dark, light } from './theme';
+import { sampleReport } from '../report_sample';
 
 const single = (values: Num[]) => ({ low: values, high: values });
 
-const monitor = {
+const monitor: Monitor = {
+  ...sampleReport().monitor!,
   unit: 'm/s²',
   teeth: 2,
   wave_run_s: 1,
@@ -27,7 +29,7 @@ const monitor = {
     { state: 'chatter', reason: null, from_s: 1.5, to_s: 2 },
     { state: 'blind', reason: 'gap', from_s: 2, to_s: 3 },
   ],
-} as Monitor;
+};
 
 describe('what the monitor detected', () => {
   it('is shaded where it was not stable, each state once in the legend', () => {
@@ -99,7 +101,7 @@ describe('calibration', () => {
     const chosen = { threshold: 5, false_alarm_rate: 0.01, detection_rate: 0.9, median_delay_s: null };
     const roc = [{ ...chosen, threshold: 9, false_alarm_rate: 0, detection_rate: 0.5 }, { ...chosen, threshold: 1, false_alarm_rate: 1, detection_rate: 1 }];
     const half = { stable: 10, chatter: 10, chosen, roc };
-    const calibration: Calibration = { status: 'found', reason: '', entropy: 'energy', threshold: 5, alarm: 'above', setting: half, verifying: half, median_lead_s: null, recordings: [] };
+    const calibration: Calibration = { ...sampleReport().calibration!, threshold: 5, setting: half, verifying: half };
     const { data } = rocFigure(calibration, light, false);
     expect(data[0]).toMatchObject({ x: [0, 100], y: [50, 100] });
     expect(data[2]).toMatchObject({ x: [1], y: [90], name: 'chosen' });

@@ -2,7 +2,8 @@ import type { Calibration, Monitor, MonitorState, Num, RocPoint } from '../docum
 import { bandCurves } from '../bands';
 import { chatterMarks, multiplesOver, shadedStays, speedStretches, type SpeedStretch } from '../monitor_views';
 import { curve, suffix } from './rows';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { scaled } from '../text';
+import { axis, barBelow, layout, lines, plain, points, seriesColour, shadedBetween, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const shades: { state: MonitorState; name: string; colour: (theme: Theme) => string; opacity: number }[] = [
   { state: 'chatter', name: 'chatter', colour: (theme) => theme.chatter, opacity: 0.2 },
@@ -18,22 +19,7 @@ export function states(monitor: Monitor, theme: Theme): Layout[] {
     const { name, colour, opacity } = shades.find((shade) => shade.state === state)!;
     const first = !named.has(state);
     named.add(state);
-    return {
-      type: 'rect',
-      xref: 'x',
-      yref: 'paper',
-      x0: from_s,
-      x1: Math.max(to_s, from_s + (end - begin) / 500),
-      y0: 0,
-      y1: 1,
-      layer: 'below',
-      fillcolor: colour(theme),
-      opacity,
-      line: { width: 0 },
-      name,
-      legendgroup: state,
-      showlegend: first,
-    };
+    return { ...shadedBetween(from_s, Math.max(to_s, from_s + (end - begin) / 500), colour(theme), opacity), name, legendgroup: state, showlegend: first };
   });
 }
 
@@ -51,17 +37,10 @@ function timeAxis(monitor: Monitor, theme: Theme, more: Layout = {}): Layout {
 export function waveFigure(monitor: Monitor, theme: Theme, narrow: boolean): Figure {
   const unit = plain(monitor.unit);
   const { time_s: time, values } = bandCurves(monitor.channels.map((channel) => channel.wave), monitor.wave_run_s);
-  const data: Trace[] = monitor.channels.map((channel, i) => ({
-    type: 'scatter',
-    mode: 'lines',
-    name: plain(channel.name),
-    showlegend: monitor.channels.length > 1,
-    x: time,
-    y: values[i],
-    opacity: monitor.channels.length > 1 ? 0.7 : 1,
-    line: { color: theme.series[i % theme.series.length], width: 0.8 },
-    hovertemplate: `%{x:.3f}${thinSpace}s: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
-  }));
+  const several = monitor.channels.length > 1;
+  const data = monitor.channels.map((channel, i) =>
+    lines(plain(channel.name), time, values[i]!, { color: seriesColour(theme, i), width: 0.8 }, `%{x:.3f}${thinSpace}s: %{y:.4g}${thinSpace}${unit}`, { showlegend: several, opacity: several ? 0.7 : 1 }),
+  );
   return {
     data,
     layout: layout(theme, narrow ? 320 : 240, {
@@ -86,17 +65,14 @@ function count(to: number): number[] {
 function cutLines(monitor: Monitor, theme: Theme, highest_hz: number): Trace[] {
   const stretches = speedStretches(monitor);
   const teeth = monitor.teeth ?? 0;
-  const line = (name: string, perTurn: number, multiples: number[], style: object): Trace => ({
-    type: 'scatter',
-    mode: 'lines',
-    name,
-    ...multiplesOver(stretches, perTurn, multiples, highest_hz),
-    line: style,
-    hoverinfo: 'skip',
-  });
-  const lines = [line('rotation', 1, count(teeth > 0 ? Math.min(3, teeth - 1) : 3), { color: theme.overlay, width: 1, dash: '1px,4px' })];
-  if (teeth > 0) lines.push(line('tooth passing', teeth, count(mostMultiples), { color: theme.overlay, width: 1.2, dash: '6px,5px' }));
-  return lines.filter(({ x }) => (x as Num[]).length > 0);
+  const line = (name: string, perTurn: number, multiples: number[], style: Layout): Trace[] => {
+    const { x, y } = multiplesOver(stretches, perTurn, multiples, highest_hz);
+    return x.length === 0 ? [] : [lines(name, x, y, style, null)];
+  };
+  return [
+    ...line('rotation', 1, count(teeth > 0 ? Math.min(3, teeth - 1) : 3), { color: theme.overlay, width: 1, dash: '1px,4px' }),
+    ...(teeth > 0 ? line('tooth passing', teeth, count(mostMultiples), { color: theme.overlay, width: 1.2, dash: '6px,5px' }) : []),
+  ];
 }
 
 /** The synchrosqueezed spectrogram up to what is worth drawing, with the frequencies of chatter and those of the cut. */
@@ -116,32 +92,14 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
       zmax: 0,
       zsmooth: false,
       colorscale: [[0, theme.panel], ...theme.scale.map(([at, colour]) => [0.25 + 0.75 * at, colour])],
-      colorbar: {
-        title: { text: 'Level (dB below the highest)', side: 'top', font: { size: 12 } },
-        orientation: 'h',
-        thickness: 10,
-        len: 1,
-        x: 0.5,
-        y: -0.16,
-        yanchor: 'top',
-        outlinewidth: 0,
-        tickvals: [-50, -40, -30, -20, -10, 0],
-        ticktext: ['50', '40', '30', '20', '10', '0'],
-      },
+      colorbar: barBelow('Level (dB below the highest)', -0.16, { tickvals: [-50, -40, -30, -20, -10, 0], ticktext: ['50', '40', '30', '20', '10', '0'] }),
       hovertemplate: `%{x:.3f}${thinSpace}s, %{y:.1f}${thinSpace}Hz: %{z}${thinSpace}dB<extra></extra>`,
     },
     ...cutLines(monitor, theme, highest),
   ];
   if (marks.time_s.length > 0) {
-    data.push({
-      type: 'scatter',
-      mode: 'markers',
-      name: 'chatter reported',
-      x: marks.time_s,
-      y: marks.frequency_hz,
-      marker: { symbol: 'circle-open', size: 11, color: theme.chatter, line: { width: 2 } },
-      hovertemplate: `%{x:.3f}${thinSpace}s: chatter at %{y:.1f}${thinSpace}Hz<extra></extra>`,
-    });
+    const ring = { symbol: 'circle-open', size: 11, color: theme.chatter, line: { width: 2 } };
+    data.push(points('chatter reported', marks.time_s, marks.frequency_hz, ring, `%{x:.3f}${thinSpace}s: chatter at %{y:.1f}${thinSpace}Hz`));
   }
   return {
     data,
@@ -202,7 +160,7 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   const { run_s, score, threshold, energy_entropy } = monitor.decisions;
   const { time_s: time, values } = bandCurves([score, threshold, energy_entropy], run_s);
   const fromZero = { rangemode: 'tozero', exponentformat: 'SI' };
-  const line = (index: number, label: string, y: Num[], style: object): Trace => curve(index, label, '', time, y, style, { showlegend: index === 0 });
+  const line = (index: number, label: string, y: Num[], style: Layout): Trace => curve(index, label, '', time, y, style, { showlegend: index === 0 });
   const rows: Row[] = [
     {
       title: 'Score',
@@ -219,12 +177,9 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   if (stretches.length > 0) rows.push(speedRow(stretches, theme));
   const axes: Layout = {};
   rows.forEach((row, index) => {
-    const top = 1 - index / rows.length;
-    axes[`yaxis${suffix(index)}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, {
-      domain: [index === rows.length - 1 ? 0 : top - 1 / rows.length + 0.05, top],
-      nticks: 5,
-      ...row.axis,
-    });
+    const [low, top] = stacked(index, rows.length, 0.05);
+    const domain = [index === rows.length - 1 ? 0 : low, top];
+    axes[`yaxis${suffix(index)}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, { domain, nticks: 5, ...row.axis });
   });
   return {
     data: rows.flatMap((row, index) => row.traces(index)),
@@ -246,25 +201,14 @@ export function rocFigure(calibration: Calibration, theme: Theme, narrow: boolea
     ['set', setting.roc],
     ['verified', verifying.roc],
   ];
-  const data: Trace[] = halves.map(([name, roc], i) => ({
-    type: 'scatter',
-    mode: 'lines',
-    name,
-    x: roc.map((point) => 100 * point.false_alarm_rate),
-    y: roc.map((point) => 100 * point.detection_rate),
-    customdata: roc.map((point) => point.threshold),
-    line: { color: theme.series[i % theme.series.length], width: 2, shape: 'hv', dash: i % 2 === 0 ? 'solid' : '7px,3px' },
-    hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found at %{customdata:.4g}<extra></extra>`,
-  }));
-  data.push({
-    type: 'scatter',
-    mode: 'markers',
-    name: mark,
-    x: [100 * verifying.chosen.false_alarm_rate],
-    y: [100 * verifying.chosen.detection_rate],
-    marker: { symbol: 'diamond', size: 12, color: theme.chatter },
-    hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found<extra>${mark}</extra>`,
+  const hover = `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found`;
+  const wrong = (roc: RocPoint[]) => roc.map((point) => scaled(point.false_alarm_rate, 100));
+  const found = (roc: RocPoint[]) => roc.map((point) => scaled(point.detection_rate, 100));
+  const data = halves.map(([name, roc], i) => {
+    const line = { color: seriesColour(theme, i), width: 2, shape: 'hv', dash: i % 2 === 0 ? 'solid' : '7px,3px' };
+    return lines(name, wrong(roc), found(roc), line, `${hover} at %{customdata:.4g}`, { customdata: roc.map((point) => point.threshold) });
   });
+  data.push(points(mark, wrong([verifying.chosen]), found([verifying.chosen]), { symbol: 'diamond', size: 12, color: theme.chatter }, `${hover}<extra>${mark}</extra>`));
   return {
     data,
     layout: layout(theme, narrow ? 340 : 420, {

@@ -1,33 +1,23 @@
 import type { ExplanationDocument, PeakKind } from '../documents';
 import { readingText, reachOf } from '../verb_views';
 import { harmonics, looks, verticals } from './spectrum';
-import { axis, layout, plain, thinSpace, type Figure, type Theme, type Trace } from './theme';
+import { axis, layout, plain, points, thinSpace, type Figure, type Theme, type Trace } from './theme';
 
 const kinds = ['rotation', 'tooth passing', 'chatter', 'cut or chatter', 'unexplained'] as const;
 
 /** One trace a kind: filled where it names the peak, open where it is one of several readings. */
 function marks(document: ExplanationDocument, kind: PeakKind, row: number, theme: Theme): Trace[] {
   const { colour } = looks[kind];
-  const points = (name: string, symbol: string, at: { f: number; text: string }[]): Trace[] =>
-    at.length === 0
-      ? []
-      : [
-          {
-            type: 'scatter',
-            mode: 'markers',
-            name,
-            x: at.map(({ f }) => f),
-            y: at.map(() => row),
-            text: at.map(({ text }) => plain(text)),
-            hovertemplate: `%{x:.2f}${thinSpace}Hz<br>%{text}<extra></extra>`,
-            marker: { symbol, size: 11, color: theme[colour], line: { width: 1.5, color: theme[colour] } },
-          },
-        ];
+  const drawn = (name: string, symbol: string, at: { f: number; text: string }[]): Trace[] => {
+    const marker = { symbol, size: 11, color: theme[colour], line: { width: 1.5, color: theme[colour] } };
+    const text = at.map((one) => plain(one.text));
+    return at.length === 0 ? [] : [points(name, at.map(({ f }) => f), at.map(() => row), marker, `%{x:.2f}${thinSpace}Hz<br>%{text}`, { text })];
+  };
   const own = document.peaks.filter((peak) => peak.kind === kind).map((peak) => ({ f: peak.frequency_hz, text: readingText(peak) }));
   const other = document.peaks.flatMap((peak) =>
     peak.others.filter((reading) => reading.kind === kind).map((reading) => ({ f: peak.frequency_hz, text: `or ${readingText(reading)}` })),
   );
-  return [...points(kind, 'circle', own), ...points(`${kind}, another reading`, 'circle-open', other)];
+  return [...drawn(kind, 'circle', own), ...drawn(`${kind}, another reading`, 'circle-open', other)];
 }
 
 /** The peaks over frequency, a row a kind, with the multiples of the rotation. */

@@ -1,6 +1,6 @@
 import type { Num } from '../documents';
 import type { FeedDirections } from '../views';
-import { axis, layout, rpm, thinSpace, type Figure, type Layout, type Theme } from './theme';
+import { axis, layout, lines, points, rpm, thinSpace, type Figure, type Layout, type Theme } from './theme';
 
 /** Rings at round numbers, three to six of them, the last at or beyond `most`. */
 export function rings(most: number): number[] {
@@ -61,34 +61,21 @@ export function polarFigure(feed: FeedDirections, which: 'lowest' | 'speed', the
   const colour = which === 'lowest' ? theme.accent : theme.stable;
   const line = toPlane(feed.direction_deg, limit);
   const { shapes, annotations } = frame(most, theme);
-  const data: Layout[] = [
-    {
-      type: 'scatter',
+  const data = [
+    lines('limit', line.x, line.y, { color: colour, width: 2 }, `%{customdata[0]:.0f}°: %{customdata[1]:.3f}${thinSpace}mm`, {
       mode: 'lines+markers',
-      name: 'limit',
-      x: line.x,
-      y: line.y,
       customdata: line.direction.map((degrees, i) => [degrees % 360, line.radius[i]]),
       fill: open ? 'none' : 'toself',
       fillcolor: theme.stableFill,
       connectgaps: false,
-      line: { color: colour, width: 2 },
       marker: { size: 4, color: colour },
-      hovertemplate: `%{customdata[0]:.0f}°: %{customdata[1]:.3f}${thinSpace}mm<extra></extra>`,
-    },
+    }),
   ];
   if (open && searched !== null) {
     const beyond = toPlane(feed.direction_deg, limit.map((depth) => (depth === null ? searched : null)));
-    data.push({
-      type: 'scatter',
-      mode: 'markers',
-      name: `none up to ${searched} mm`,
-      x: beyond.x,
-      y: beyond.y,
-      customdata: beyond.direction.map((degrees) => degrees % 360),
-      marker: { symbol: 'circle-open', size: 6, color: colour },
-      hovertemplate: `%{customdata:.0f}°: no limit up to ${searched}${thinSpace}mm<extra></extra>`,
-    });
+    const marker = { symbol: 'circle-open', size: 6, color: colour };
+    const directions = beyond.direction.map((degrees) => degrees % 360);
+    data.push(points(`none up to ${searched} mm`, beyond.x, beyond.y, marker, `%{customdata:.0f}°: no limit up to ${searched}${thinSpace}mm`, { customdata: directions }));
   }
   if (feed.used_direction_deg !== null) {
     const angle = (feed.used_direction_deg * Math.PI) / 180;

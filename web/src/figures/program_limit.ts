@@ -1,6 +1,7 @@
 import type { BlockColumns, LimitOver, Num } from '../documents';
 import { isUnstable, numberAt, thinned } from '../path_views';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { highest } from './rows';
+import { axis, layout, lines, points, thinSpace, verticalLine, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Limit with its band and programmed depth over the number of the block; unstable blocks are marked, the selected one has a line. */
 export function limitFigure(columns: BlockColumns, selected: number | null, theme: Theme): Figure {
@@ -10,47 +11,27 @@ export function limitFigure(columns: BlockColumns, selected: number | null, them
   const keep = thinned([limit, low, high, depth], count);
   const x = keep.map((i) => columns.block[i]!);
   const of = (column: Num[]) => keep.map((i) => numberAt(column, i));
-  const line = { type: 'scatter', mode: 'lines', x };
   const data: Trace[] = [];
   if (low.length > 0) {
     // A polygon a stretch: where one end is not known there is no band.
     const band = stretches(keep, low, high);
     for (const [i, part] of band.entries()) {
       const at = part.map((index) => columns.block[index]!);
-      data.push({
-        type: 'scatter',
-        mode: 'lines',
-        name: '5 – 95 %',
-        x: [...at, ...at.slice().reverse()],
-        y: [...part.map((index) => low[index]!), ...part.map((index) => high[index]!).reverse()],
-        fill: 'toself',
-        fillcolor: theme.bandFill,
-        line: { width: 0 },
-        hoverinfo: 'skip',
-        legendgroup: 'band',
-        showlegend: i === 0,
-      });
+      const edge = [...part.map((index) => low[index]!), ...part.map((index) => high[index]!).reverse()];
+      data.push(lines('5 – 95 %', [...at, ...at.slice().reverse()], edge, { width: 0 }, null, { fill: 'toself', fillcolor: theme.bandFill, legendgroup: 'band', showlegend: i === 0 }));
     }
   }
   data.push(
-    { ...line, name: 'limit depth', y: of(limit), line: { color: theme.accent, width: 1.6 }, hovertemplate: `limit %{y:.4g}${thinSpace}mm<extra></extra>` },
-    { ...line, name: 'programmed depth', y: of(depth), line: { color: theme.text, width: 1.2, dash: '5px,3px' }, hovertemplate: `block %{x}: depth %{y:.4g}${thinSpace}mm<extra></extra>` },
+    lines('limit depth', x, of(limit), { color: theme.accent, width: 1.6 }, `limit %{y:.4g}${thinSpace}mm`),
+    lines('programmed depth', x, of(depth), { color: theme.text, width: 1.2, dash: '5px,3px' }, `block %{x}: depth %{y:.4g}${thinSpace}mm`),
   );
   const bad = keep.filter((i) => isUnstable(columns, i));
   if (bad.length > 0) {
-    data.push({
-      type: 'scatter',
-      mode: 'markers',
-      name: 'unstable',
-      x: bad.map((i) => columns.block[i]!),
-      y: bad.map((i) => numberAt(depth, i)),
-      marker: { symbol: 'x', size: 6, color: theme.chatter },
-      hovertemplate: 'unstable<extra></extra>',
-    });
+    const cross = { symbol: 'x', size: 6, color: theme.chatter };
+    data.push(points('unstable', bad.map((i) => columns.block[i]!), bad.map((i) => numberAt(depth, i)), cross, 'unstable'));
   }
-  const most = highest([limit, low, depth]); // the upper edge of the band may be far above everything
-  const at = selected === null ? null : columns.block[selected]!;
-  const shapes: Layout[] = at === null ? [] : [{ type: 'line', xref: 'x', yref: 'paper', x0: at, x1: at, y0: 0, y1: 1, line: { color: theme.muted, width: 2 } }];
+  const most = highest([limit, low, depth].flat()); // the upper edge of the band may be far above everything
+  const shapes = selected === null ? [] : [verticalLine(columns.block[selected]!, { color: theme.muted, width: 2 })];
   return {
     data,
     layout: layout(theme, 340, {
@@ -84,17 +65,7 @@ export function overFigure(scan: LimitOver, most: number, depth: Num, theme: The
   const shapes: Layout[] = depth === null ? [] : [{ type: 'line', xref: 'paper', yref: 'y', x0: 0, x1: 1, y0: depth, y1: depth, line: { color: theme.text, width: 1.2, dash: '5px,3px' } }];
   return {
     data: [
-      {
-        type: 'scatter',
-        mode: 'lines+markers',
-        name: 'limit depth',
-        showlegend: false,
-        x: scan.value,
-        y: scan.limit_depth_mm,
-        line: { color: theme.accent, width: 1.6 },
-        marker: { size: 5 },
-        hovertemplate: `%{y:.4g}${thinSpace}mm at %{x:.5g}<extra></extra>`,
-      },
+      lines('limit depth', scan.value, scan.limit_depth_mm, { color: theme.accent, width: 1.6 }, `%{y:.4g}${thinSpace}mm at %{x:.5g}`, { mode: 'lines+markers', showlegend: false, marker: { size: 5 } }),
     ],
     layout: layout(theme, 240, {
       margin: { l: 60, r: 20, t: 12, b: 46 },
@@ -105,12 +76,7 @@ export function overFigure(scan: LimitOver, most: number, depth: Num, theme: The
   };
 }
 
-/** The highest value of some columns; 0 where there is none. */
-function highest(columns: Num[][]): number {
-  return columns.reduce((most, column) => column.reduce<number>((so, value) => Math.max(so, value ?? 0), most), 0);
-}
-
 /** The deepest of all limits and of this depth. */
 export function deepest(scans: LimitOver[], depth: Num): number {
-  return highest([[depth], ...scans.map((scan) => scan.limit_depth_mm)]);
+  return highest([depth, ...scans.flatMap((scan) => scan.limit_depth_mm)]);
 }

@@ -1,7 +1,7 @@
 // Plots one above the other that share the axis below them.
 import type { TimeCurve } from '../bands';
 import type { Num } from '../documents';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, layout, legendRow, lines, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** What the names of an axis end with in the index-th plot from above. */
 export function suffix(index: number): string {
@@ -9,18 +9,8 @@ export function suffix(index: number): string {
 }
 
 /** A curve in the index-th plot. */
-export function curve(index: number, name: string, unit: string, x: Num[], y: Num[], line: object, more: Trace = {}): Trace {
-  return {
-    type: 'scatter',
-    mode: 'lines',
-    name,
-    x,
-    y,
-    yaxis: `y${suffix(index)}`,
-    line,
-    hovertemplate: `%{y:.4g}${unit === '' ? '' : thinSpace}${unit}<extra>${name}</extra>`,
-    ...more,
-  };
+export function curve(index: number, name: string, unit: string, x: Num[], y: Num[], line: Layout, more: Trace = {}): Trace {
+  return lines(name, x, y, line, `%{y:.4g}${unit === '' ? '' : thinSpace}${unit}<extra>${name}</extra>`, { yaxis: `y${suffix(index)}`, ...more });
 }
 
 /** A limit further above the curve than this would flatten it. */
@@ -32,17 +22,7 @@ export function limitMarks(index: number, heights: number[], text: string, theme
   const line = { color: theme.chatter, width: 1.5, dash: '6px,4px' };
   return {
     shapes: heights.map((at) => ({ type: 'line', xref: 'paper', yref: y, x0: 0, x1: 1, y0: at, y1: at, line })),
-    annotation: {
-      text,
-      showarrow: false,
-      font: { size: 11, color: theme.chatter },
-      xref: 'paper',
-      x: 1,
-      xanchor: 'right',
-      yref: `${y} domain`,
-      y: 1,
-      yanchor: 'bottom',
-    },
+    annotation: { text, showarrow: false, font: { size: 11, color: theme.chatter }, xref: 'paper', x: 1, xanchor: 'right', yref: `${y} domain`, y: 1, yanchor: 'bottom' },
   };
 }
 
@@ -62,6 +42,11 @@ export interface Row {
   both: boolean; // signs
 }
 
+/** Highest of the numbers; 0 where there is none above it. */
+export function highest(values: Num[]): number {
+  return values.reduce<number>((most, value) => Math.max(most, value ?? 0), 0);
+}
+
 /** Largest magnitude of the numbers that there are. */
 export function magnitude(values: Num[]): number {
   return values.reduce<number>((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
@@ -73,7 +58,6 @@ export function overTime(rows: Row[], duration: number, legend: boolean, theme: 
   const shapes: Layout[] = [];
   const annotations: Layout[] = [];
   const axes: Layout = {};
-  const share = 1 / rows.length;
   const named = new Set<string>();
   rows.forEach((row, index) => {
     const most = Math.max(...row.lines.map((line) => magnitude(line.values)), 0);
@@ -90,10 +74,9 @@ export function overTime(rows: Row[], duration: number, legend: boolean, theme: 
       shapes.push(...marks.shapes);
       annotations.push(marks.annotation);
     }
-    const top = 1 - index * share;
     const high = 1.1 * Math.max(most, inside ? row.limit! : 0) || 1;
     axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
-      domain: [Math.max(0, top - share + 0.05), top],
+      domain: stacked(index, rows.length, 0.05),
       range: [row.both ? -high : 0, high],
       nticks: 5,
       zeroline: row.both,
@@ -105,7 +88,7 @@ export function overTime(rows: Row[], duration: number, legend: boolean, theme: 
     layout: layout(theme, 165 * rows.length + 80, {
       hovermode: 'x',
       margin: { l: 72, r: 36, t: legend ? 52 : 32, b: 48 },
-      legend: { orientation: 'h', yanchor: 'bottom', y: 1 + 22 / (165 * rows.length), xanchor: 'left', x: 0, font: { size: 12 } },
+      legend: legendRow({ y: 1 + 22 / (165 * rows.length) }),
       xaxis: axis(theme, 'Time (s)', { anchor: `y${rows.length}`, range: [0, duration], hoverformat: '.3f', exponentformat: 'none' }),
       ...axes,
       shapes,

@@ -1,8 +1,9 @@
 import { bandCurve, type Band } from '../bands';
 import type { Motion, MotionDocument, Num, SmoothDocument, SmoothedBy } from '../documents';
-import { jointUnit, scaled, smoothedBy } from '../smooth_views';
+import { jointUnit, smoothedBy } from '../smooth_views';
+import { scaled } from '../text';
 import { overTime, type Line, type Row } from './rows';
-import { plain, type Figure, type Theme } from './theme';
+import { plain, seriesColour, type Figure, type Theme } from './theme';
 
 export const dashes = ['solid', '7px,3px', '2px,2px', '9px,3px,2px,3px', '4px,4px'];
 
@@ -15,7 +16,7 @@ export function speedFigure(smooth: SmoothDocument, { motions }: MotionDocument,
     motions.map((motion, i) => ({
       name: plain(methods[i]!.method),
       ...bandCurve(band(motion), motion.run_s),
-      color: theme.series[i % theme.series.length]!,
+      color: seriesColour(theme, i),
       dash: dashes[i % dashes.length]!,
     }));
   const rows: Row[] = [

@@ -2,7 +2,7 @@ import type { ComparisonDocument, SweepDocument } from '../documents';
 import { sweptOf } from '../verb_views';
 import { dashes } from './smooth';
 import { depthAxis, pointTraces, radiusMap, speedAxis } from './lobes';
-import { axis, layout, plain, thinSpace, type Figure, type Theme } from './theme';
+import { axis, layout, lines, plain, seriesColour, thinSpace, type Figure, type Theme } from './theme';
 
 /** The spectral radius over speed and what is swept, with the points that were asked for. */
 export function sweepFigure(sweep: SweepDocument, theme: Theme): Figure {
@@ -16,17 +16,12 @@ export function sweepFigure(sweep: SweepDocument, theme: Theme): Figure {
 export function comparisonFigure({ spindle_speed_rpm: speed, methods }: ComparisonDocument, theme: Theme): Figure {
   const taken = methods.filter(({ limit_mm: limit }) => limit.length > 0);
   return {
-    data: taken.map(({ method, limit_mm: limit }, i) => ({
-      type: 'scatter',
-      mode: 'lines+markers',
-      name: plain(method),
-      x: speed,
-      y: limit,
-      connectgaps: false,
-      line: { color: theme.series[i % theme.series.length], width: i === 0 ? 3 : 1.6, dash: dashes[i % dashes.length] },
-      marker: { size: i === 0 ? 5 : 4, color: theme.series[i % theme.series.length] },
-      hovertemplate: `%{y:.4g}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra>${plain(method)}</extra>`,
-    })),
+    data: taken.map(({ method, limit_mm: limit }, i) => {
+      const color = seriesColour(theme, i);
+      const line = { color, width: i === 0 ? 3 : 1.6, dash: dashes[i % dashes.length] };
+      const more = { mode: 'lines+markers', connectgaps: false, marker: { size: i === 0 ? 5 : 4, color } };
+      return lines(plain(method), speed, limit, line, `%{y:.4g}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra>${plain(method)}</extra>`, more);
+    }),
     layout: layout(theme, 460, {
       hovermode: 'closest',
       margin: { l: 56, r: 36, t: 40, b: 48 },

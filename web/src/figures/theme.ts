@@ -62,6 +62,57 @@ export interface Figure {
   layout: Layout;
 }
 
+/** What is shown under the pointer; null: nothing. */
+function hovered(text: string | null): Trace {
+  return text === null ? { hoverinfo: 'skip' } : { hovertemplate: text.includes('<extra>') ? text : `${text}<extra></extra>` };
+}
+
+/** A line. `hover`: a template of what is shown under the pointer. */
+export function lines(name: string, x: unknown[], y: unknown[], line: Layout, hover: string | null, more: Trace = {}): Trace {
+  return { type: 'scatter', mode: 'lines', name, x, y, line, ...hovered(hover), ...more };
+}
+
+/** Marks at points. */
+export function points(name: string, x: unknown[], y: unknown[], marker: Layout, hover: string | null, more: Trace = {}): Trace {
+  return { type: 'scatter', mode: 'markers', name, x, y, marker, ...hovered(hover), ...more };
+}
+
+/** A line over the whole height at a place of the x axis. */
+export function verticalLine(at: number, line: Layout, more: Layout = {}): Layout {
+  return { type: 'line', xref: 'x', yref: 'paper', x0: at, x1: at, y0: 0, y1: 1, line, ...more };
+}
+
+/** A shade over the whole height. */
+export function shadedBetween(x0: number, x1: number, fillcolor: string, opacity: number): Layout {
+  return { type: 'rect', xref: 'x', yref: 'paper', x0, x1, y0: 0, y1: 1, layer: 'below', fillcolor, opacity, line: { width: 0 } };
+}
+
+/** The colour of the index-th of several. */
+export function seriesColour({ series }: Theme, index: number): string {
+  return series[index % series.length]!;
+}
+
+/** The place of the index-th of several plots, from above. */
+export function stacked(index: number, count: number, gap: number): [number, number] {
+  const top = 1 - index / count;
+  return [Math.max(0, top - 1 / count + gap), top];
+}
+
+/** Below zero, or a limit, one colour, above it another. */
+export function diverging(low: string, theme: Theme, high: string): [number, string][] {
+  return [[0, low], [0.5, theme.panel], [1, high]];
+}
+
+/** A scale of colours below a plot. */
+export function barBelow(title: string, y: number, more: Layout = {}): Layout {
+  return { title: { text: title, side: 'top', font: { size: 12 } }, orientation: 'h', thickness: 10, len: 1, x: 0.5, y, yanchor: 'top', outlinewidth: 0, ...more };
+}
+
+/** Names of curves in a row. */
+export function legendRow(more: Layout): Layout {
+  return { orientation: 'h', yanchor: 'bottom', xanchor: 'left', x: 0, font: { size: 12 }, ...more };
+}
+
 /** Of a theme's series, those of x, y and z: none of them is the colour of chatter or of stable. */
 export const directionSeries = [0, 3, 4] as const;
 
@@ -106,7 +157,7 @@ export function layout(theme: Theme, height: number, more: Layout = {}): Layout 
     modebar: { orientation: 'v', bgcolor: 'rgba(0,0,0,0)', color: theme.unknown, activecolor: theme.accent },
     separators: `.${thinSpace}`,
     hoverlabel: { bgcolor: theme.panel, bordercolor: theme.muted, font: { color: theme.text }, align: 'left' },
-    legend: { orientation: 'h', yanchor: 'bottom', y: 1.01, xanchor: 'left', x: 0, font: { size: 12 } },
+    legend: legendRow({ y: 1.01 }),
     ...more,
   };
 }

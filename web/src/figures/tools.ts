@@ -1,6 +1,6 @@
 import type { Num, ToolRow } from '../documents';
 import { suffix } from './rows';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, layout, plain, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 interface Bars {
   title: string;
@@ -24,11 +24,9 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
   ];
   const rows = all.filter(({ values }) => values.some((value) => value !== null));
   const places = tools.map((_, i) => i + 1);
-  const share = 1 / Math.max(rows.length, 1);
   const axes: Layout = {};
   const data: Trace[] = rows.map(({ title, unit, values }, index) => {
-    const top = 1 - index * share;
-    axes[`yaxis${suffix(index)}`] = axis(theme, title, { domain: [Math.max(0, top - share + 0.05), top], rangemode: 'tozero', nticks: 5, exponentformat: 'none' });
+    axes[`yaxis${suffix(index)}`] = axis(theme, title, { domain: stacked(index, rows.length, 0.05), rangemode: 'tozero', nticks: 5, exponentformat: 'none' });
     return {
       type: 'bar',
       name: title,

@@ -1,5 +1,5 @@
 import type { Block, Num, Places } from '../documents';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, barBelow, layout, lines, points, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 interface Line {
   x: Num[];
@@ -85,6 +85,11 @@ export const views = [
   { name: 'from the side', up: 'z' as const, axes: { xaxis: 'x2', yaxis: 'y2' } },
 ];
 
+/** Points of one view in the colours of the scale that both share; `hover`: before their place. */
+export function colouredPoints({ name, up, axes }: (typeof views)[number], x: Num[], y: Num[], size: number, color: number[], hover: string, more: Trace = {}): Trace {
+  return points(name, x, y, { size, color, coloraxis: 'coloraxis' }, `${hover}<br>at x %{x:.2f}, ${up} %{y:.2f}${thinSpace}mm`, { showlegend: false, ...axes, ...more });
+}
+
 const margin = { l: 64, r: 24, t: 30, b: 104 };
 const between = 78;
 const highestView = 460;
@@ -157,15 +162,7 @@ export function viewsLayout(place: Frame, theme: Theme, scale: string | null): L
     coloraxis: {
       colorscale: theme.scale,
       showscale: scale !== null,
-      colorbar: {
-        orientation: 'h',
-        title: { text: scale ?? '', side: 'top' },
-        thickness: 10,
-        outlinewidth: 0,
-        y: -52 / (place.height - margin.t - margin.b),
-        yanchor: 'top',
-        len: place.stacked ? 1 : 0.5,
-      },
+      colorbar: barBelow(scale ?? '', -52 / (place.height - margin.t - margin.b), { len: place.stacked ? 1 : 0.5 }),
     },
   });
 }
@@ -175,23 +172,11 @@ export function trackFigure(blocks: Block[], theme: Theme, width: number): Figur
   const place = frame(placesOf(blocks), width);
   const air = moves(blocks, false);
   const cut = moves(blocks, true);
-  const points = marks(blocks);
-  const line = { type: 'scatter', mode: 'lines', hoverinfo: 'skip', showlegend: false };
+  const at = marks(blocks);
   const data: Trace[] = views.flatMap((view) => [
-    { ...line, ...view.axes, name: 'air', x: air.x, y: air[view.up], line: { color: theme.unknown, width: 0.8 } },
-    { ...line, ...view.axes, name: 'cut', x: cut.x, y: cut[view.up], line: { color: theme.grid, width: 1.5 } },
-    {
-      type: 'scatter',
-      mode: 'markers',
-      ...view.axes,
-      name: view.name,
-      showlegend: false,
-      x: points.x,
-      y: points[view.up],
-      customdata: points.place,
-      marker: { size: 4, color: points.force, coloraxis: 'coloraxis' },
-      hovertemplate: `%{marker.color:.4g}${thinSpace}N in block %{customdata[0]}, line %{customdata[1]}<br>at x %{x:.2f}, ${view.up} %{y:.2f}${thinSpace}mm<extra></extra>`,
-    },
+    lines('air', air.x, air[view.up], { color: theme.unknown, width: 0.8 }, null, { showlegend: false, ...view.axes }),
+    lines('cut', cut.x, cut[view.up], { color: theme.grid, width: 1.5 }, null, { showlegend: false, ...view.axes }),
+    colouredPoints(view, at.x, at[view.up], 4, at.force, `%{marker.color:.4g}${thinSpace}N in block %{customdata[0]}, line %{customdata[1]}`, { customdata: at.place }),
   ]);
-  return { data, layout: viewsLayout(place, theme, points.force.length > 0 ? 'Peak force (N)' : null) };
+  return { data, layout: viewsLayout(place, theme, at.force.length > 0 ? 'Peak force (N)' : null) };
 }

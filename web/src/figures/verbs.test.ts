@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
-import type { ExplanationDocument, SimulationDocument, Slot, StiffnessDocument, ToolRow, VibrationDocument } from '../documents';
+import type { ExplanationDocument, Slot, StiffnessDocument, ToolRow, VibrationDocument } from '../documents';
 import { comparisonSample, lobesSample, pointSample, sweepSample } from '../lobes_sample';
+import { sampleReport } from '../report_sample';
 import { displacementFigure, jointsFigure, slotResidualFigure, slotsFigure } from './identified';
 import { pointTraces, surfaceFigure } from './lobes';
 import { peaksFigure } from './peaks';
@@ -8,6 +9,8 @@ import { timeFigure, vibrationSpectrumFigure } from './simulation';
 import { comparisonFigure, sweepFigure } from './sweep';
 import { dark, light } from './theme';
 import { toolsFigure } from './tools';
+
+const report = sampleReport();
 
 const point = (stable: boolean, depth: number) => ({ ...pointSample, spindle_speed_rpm: 5000, axial_depth_mm: depth, stable });
 
@@ -47,6 +50,7 @@ describe('methods', () => {
 describe('peaks', () => {
   const reading = { kind: 'rotation' as const, rotations: 4, mirrored: false, of_tooth_passing: false, mode: null, mode_of: null, expected_hz: 400, difference_hz: 0, tolerance_hz: 1, likelihood_per_hz: 1 };
   const document: ExplanationDocument = {
+    document: 'explain/1',
     spindle_speed_rpm: 6000,
     speed_from_peaks: true,
     peaks: [
@@ -78,7 +82,7 @@ describe('simulation', () => {
     force_n: { x: band(20), z: band(3) },
     spectrum: { from_s: 0.5, frequency_hz: [0, 100, 200, 300, 4000], x_um: [0, 1, 5, 0.1, 1e-9] },
   };
-  const simulation = { spindle_speed_rpm: 6000, chatter_frequency_hz: 210 } as SimulationDocument;
+  const simulation = { ...report.simulation!, spindle_speed_rpm: 6000, chatter_frequency_hz: 210 };
   it('shows displacement over force, each direction named once', () => {
     const { data, layout } = timeFigure(vibration, light);
     expect(data.map((trace) => [trace['name'], trace['yaxis'], trace['showlegend']])).toEqual([['x', 'y', true], ['x', 'y2', false], ['z', 'y2', true]]);
@@ -109,7 +113,7 @@ describe('slots', () => {
 });
 
 describe('stiffness', () => {
-  const stiffness = { joint_stiffness_n_m_per_rad: [1e6, null, 3e6], std: [1e5, null, 2e6], unit: ['N m/rad', 'N m/rad', 'N m/rad'], displacement_mm: [[1, 2, 3]], residual_mm: [[0.1, 0, 0]], line: [2] } as unknown as StiffnessDocument;
+  const stiffness: StiffnessDocument = { ...report.stiffness!, joint_stiffness_n_m_per_rad: [1e6, null, 3e6], std: [1e5, null, 2e6], displacement_mm: [[1, 2, 3]], residual_mm: [[0.1, 0, 0]], line: [2] };
   it('has a point for each joint that is known', () => {
     const { data, layout } = jointsFigure(stiffness, light);
     expect(data[0]).toMatchObject({ x: [1, 3], y: [1e6, 3e6], error_y: { array: [2e5, 4e6] } });

@@ -1,5 +1,5 @@
 // A robot cell: where its joints put the tool, and whether that comes to the workpiece.
-import type { CellDocument, CellPlacement, CellPosture } from '../cell_document';
+import type { CellDocument, CellPlacement, CellPosture } from '../documents';
 import { cellFacts, gammaText, limitText, nearestText, placeOf, poseText, unitOf, vectorText } from '../cell_views';
 import { CellDrawing } from '../figures/cell_drawing';
 import { Bullets, Details, Facts, Section, Table } from '../parts';

@@ -1,5 +1,5 @@
 // What was decided for a program: the numbers to run it with, beside those it had.
-import type { Decision, OtherSpeed, Outcome, Stretch } from '../decision';
+import type { Decision, OtherSpeed, Outcome, Plan, Stretch } from '../documents';
 import {
   allowedText,
   beyondText,
@@ -20,7 +20,6 @@ import {
   violationOf,
   type Measure,
 } from '../decision_views';
-import type { Plan } from '../documents';
 import { thinSpace } from '../figures/theme';
 import { Bullets, Details, Facts, KeyFigures, Table, WarningBox, type Column, type KeyFigure, type TableProps } from '../parts';
 import { BlockLink, LinkedText } from '../selection';
@@ -38,7 +37,7 @@ function cardFigures(decision: Decision, decided: Outcome): KeyFigure[] {
   return [
     keyFigure('Spindle speed', speedText(decided), 'rpm', speedText(decided).includes('–') ? `in ${stretches.length} stretches` : ''),
     keyFigure(shown.label, shownTime(shown.decided), 's', savedText(shown.before, shown.decided)),
-    keyFigure('Feed', feedText(decision), 'mm/min'),
+    keyFigure('Feed', feedText(stretches), 'mm/min'),
     ...limited.map((measure): KeyFigure => {
       const violation = violationOf(decided, measure);
       const figure = keyFigure(measure.name, measure.text(decided), measure.unit);
@@ -140,7 +139,7 @@ const stretchColumns: Column<Stretch>[] = [
 function Stretches({ stretches }: { stretches: Stretch[] }) {
   if (stretches.length === 0) return null;
   if (stretches.length <= fewRows) return <Table caption="Stretch by stretch" rows={stretches} columns={stretchColumns} />;
-  const longest = [...stretches].sort((a, b) => (b.cutting_time_s ?? 0) - (a.cutting_time_s ?? 0)).slice(0, fewRows);
+  const longest = [...stretches].sort((a, b) => b.cutting_time_s - a.cutting_time_s).slice(0, fewRows);
   return (
     <>
       <Table caption={`The ${fewRows} stretches that take longest`} rows={longest} columns={stretchColumns} />
@@ -181,7 +180,7 @@ function OtherSpeeds({ speeds, several }: { speeds: OtherSpeed[]; several: boole
       rows={speeds}
       columns={[
         { heading: 'Spindle speed (rpm)', number: true, cell: (row) => fixed(row.spindle_speed_rpm, 0) },
-        { heading: 'Stretch', number: true, optional: true, cell: ({ stretch }) => fixed(several ? (stretch ?? null) : null, 0) },
+        { heading: 'Stretch', number: true, optional: true, cell: ({ stretch }) => fixed(several ? stretch : null, 0) },
         { heading: several ? 'Its cutting time at the feeds (s)' : 'Cutting time at the feeds (s)', number: true, cell: timeText },
         { heading: 'Why not', long: true, cell: stopped },
       ]}
@@ -208,7 +207,7 @@ export function DecisionSection({ decision, plan: { agreement, warnings } }: { d
         </div>
       </div>
       <Stretches stretches={stretches} />
-      <OtherSpeeds speeds={alternatives} several={alternatives.some(({ stretch }) => (stretch ?? 1) > 1)} />
+      <OtherSpeeds speeds={alternatives} several={alternatives.some(({ stretch }) => stretch > 1)} />
       {map && map.block.length > 1 && map.gamma_deg.length > 1 && <GammaSection map={map} />}
     </section>
   );

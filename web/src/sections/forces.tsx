@@ -1,18 +1,20 @@
 // Forces: over a revolution, along a program, over the spindle's rotation.
-import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, Triple, WorstBlock } from '../documents';
+import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, WorstBlock } from '../documents';
 import { engagementFigure, forceCurves, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
 import { trackFigure } from '../figures/track';
-import { Bullets, Details, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
+import { Bullets, Details, DetailsTable, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
 import { isProgram, isRevolution, valueAt } from '../views';
+
+type Triple = [number, number, number];
 
 /** "12.1, −3, 40": three numbers in one cell. */
 function coordinates(triple: Triple): string {
   return triple.map(significant).join(', ');
 }
 
-function Components({ turn }: { turn: Forces & Revolution }) {
+function Components({ turn }: { turn: Revolution }) {
   const rows: [string, Triple][] = [
     ['Mean (N)', turn.mean_n],
     ['Peak (N)', turn.peak_n],
@@ -68,7 +70,7 @@ function Verdict({ turn: { vibration, vibrating_fx_n: vibrating } }: { turn: Rev
   );
 }
 
-function OverRotation({ turn }: { turn: Forces & Revolution }) {
+function OverRotation({ turn }: { turn: Revolution }) {
   const { rotation_deg: rotation } = turn;
   const [fx, fy, fz] = forceCurves(turn);
   if (rotation.length === 0) return null;
@@ -81,20 +83,18 @@ function OverRotation({ turn }: { turn: Forces & Revolution }) {
         caption="Rotation counts clockwise from +y, seen from the spindle: at 90° the first tooth points along the feed."
         draw={(theme, width) => revolutionFigure(turn, theme, width < narrow)}
       />
-      <Details summary="Force and torque over rotation as a table">
-        <Table
-          caption="Force and torque over rotation"
-          quiet
-          columns={[
-            { heading: 'Rotation (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
-            forces('Fx (N)', fx),
-            forces('Fy (N)', fy),
-            forces('Fz (N)', fz),
-            forces('Torque (N·m)', turn.torque_by_rotation_n_m),
-          ]}
-          rows={someOf(rotation.length)}
-        />
-      </Details>
+      <DetailsTable
+        summary="Force and torque over rotation as a table"
+        caption="Force and torque over rotation"
+        columns={[
+          { heading: 'Rotation (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
+          forces('Fx (N)', fx),
+          forces('Fy (N)', fy),
+          forces('Fz (N)', fz),
+          forces('Torque (N·m)', turn.torque_by_rotation_n_m),
+        ]}
+        rows={someOf(rotation.length)}
+      />
     </>
   );
 }
@@ -115,23 +115,21 @@ function Engagement({ rings }: { rings: Ring[] }) {
         caption="Between the ends of a bar a tooth at that height is in the material."
         draw={(theme, width) => engagementFigure(rings, theme, width < narrow)}
       />
-      <Details summary="Engagement as a table">
-        <Table
-          caption="Engagement"
-          quiet
-          columns={[
-            { heading: 'Height (mm)', number: true, cell: (ring) => significant(ring.height_mm) },
-            { heading: 'Position angle κ (°)', number: true, cell: (ring) => fixed(ring.position_deg, 1) },
-            { heading: 'In the material from – to (°)', cell: arcsOf },
-          ]}
-          rows={someOf(rings.length).map((i) => rings[i]!)}
-        />
-      </Details>
+      <DetailsTable
+        summary="Engagement as a table"
+        caption="Engagement"
+        columns={[
+          { heading: 'Height (mm)', number: true, cell: (ring) => significant(ring.height_mm) },
+          { heading: 'Position angle κ (°)', number: true, cell: (ring) => fixed(ring.position_deg, 1) },
+          { heading: 'In the material from – to (°)', cell: arcsOf },
+        ]}
+        rows={someOf(rings.length).map((i) => rings[i]!)}
+      />
     </>
   );
 }
 
-function RevolutionPart({ turn }: { turn: Forces & Revolution }) {
+function RevolutionPart({ turn }: { turn: Revolution }) {
   return (
     <>
       <h3>Over a revolution</h3>
@@ -148,11 +146,7 @@ function powerName(program: Program): string {
   return `Power over ${significant(program.power_time_s)} s`;
 }
 
-interface HighestRow extends Highest {
-  name: string;
-  unit: string;
-  limit: Num;
-}
+type HighestRow = Highest & { name: string; unit: string; limit: Num };
 
 function highestRows(program: Program): HighestRow[] {
   const { highest } = program;
@@ -195,7 +189,7 @@ function HighestTable({ program }: { program: Program }) {
   );
 }
 
-function WorstTable({ program }: { program: Forces & Program }) {
+function WorstTable({ program }: { program: Program }) {
   const { worst, highest } = program;
   if (worst.length === 0) return null;
   const columns: Column<WorstBlock>[] = [
@@ -215,7 +209,7 @@ function WorstTable({ program }: { program: Forces & Program }) {
   return <Table caption="The blocks with the highest peak force" columns={columns} rows={worst} />;
 }
 
-function ProgramPart({ program }: { program: Forces & Program }) {
+function ProgramPart({ program }: { program: Program }) {
   const last = program.blocks[program.blocks.length - 1]!;
   return (
     <>

@@ -1,10 +1,9 @@
 // What the turn about the tool's axis does to the margin, all along the path.
 import { useCallback, useMemo } from 'preact/hooks';
-import type { GammaMap } from '../decision';
+import type { GammaMap, Num } from '../documents';
 import { columnFacts, leastAlong, marginAt, nearest } from '../decision_views';
-import type { Num } from '../documents';
 import { gammaFigure } from '../figures/gamma_map';
-import { BlockSteps, Details, Facts, someOf, Table } from '../parts';
+import { BlockSteps, DetailsTable, Facts, someOf } from '../parts';
 import { narrow, Plot, type Draw } from '../plot';
 import { useSelection } from '../selection';
 import { fixed, significant } from '../text';
@@ -14,20 +13,19 @@ function GammaTable({ map }: { map: GammaMap }) {
   const gamma = (line: Num[]) => (i: number) => significant(line[i] ?? null);
   const margin = (line: Num[]) => (i: number) => significant(marginAt(map, i, line[i] ?? null));
   return (
-    <Details summary="γ and margin along the path as a table">
-      <Table
-        caption="γ and margin at some of the blocks"
-        rows={rows}
-        columns={[
-          { heading: 'Block', number: true, cell: (i) => fixed(map.block[i]!, 0) },
-          { heading: 'Along the path (mm)', number: true, cell: (i) => fixed(map.path_mm[i]!, 1) },
-          { heading: 'γ as programmed (°)', number: true, cell: gamma(map.programmed_deg) },
-          { heading: 'Margin there', number: true, cell: margin(map.programmed_deg) },
-          { heading: 'γ as chosen (°)', number: true, cell: gamma(map.chosen_deg) },
-          { heading: 'Margin there', number: true, cell: margin(map.chosen_deg) },
-        ]}
-      />
-    </Details>
+    <DetailsTable
+      summary="γ and margin along the path as a table"
+      caption="γ and margin at some of the blocks"
+      rows={rows}
+      columns={[
+        { heading: 'Block', number: true, cell: (i) => fixed(map.block[i]!, 0) },
+        { heading: 'Along the path (mm)', number: true, cell: (i) => fixed(map.path_mm[i]!, 1) },
+        { heading: 'γ as programmed (°)', number: true, cell: gamma(map.programmed_deg) },
+        { heading: 'Margin there', number: true, cell: margin(map.programmed_deg) },
+        { heading: 'γ as chosen (°)', number: true, cell: gamma(map.chosen_deg) },
+        { heading: 'Margin there', number: true, cell: margin(map.chosen_deg) },
+      ]}
+    />
   );
 }
 

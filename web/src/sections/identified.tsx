@@ -2,7 +2,7 @@
 import type { CoefficientsDocument, JointDocument, Num, StiffnessDocument } from '../documents';
 import { displacementFigure, jointsFigure, slotResidualFigure, slotsFigure } from '../figures/identified';
 import { convergenceFigure } from '../figures/fit';
-import { Bullets, Details, Section, Table } from '../parts';
+import { Bullets, Details, DetailsTable, Section, Table } from '../parts';
 import { Plot } from '../plot';
 import { dash, fixed, percent, significant, withDeviation, withPower } from '../text';
 import { coefficientRows, jointRows, type CoefficientRow } from '../verb_views';
@@ -53,21 +53,19 @@ export function CoefficientsSection({ document }: { document: CoefficientsDocume
         caption="What the fit leaves should scatter about zero; a pattern in it is what the model does not have."
         draw={(theme) => slotResidualFigure(slots, theme)}
       />
-      <Details summary="Slots one by one">
-        <Table
-          caption="Slots"
-          quiet
-          rows={slots}
-          columns={[
-            { heading: 'Line', number: true, cell: ({ line }) => `${line}` },
-            { heading: 'Feed per tooth (mm)', number: true, cell: (slot) => significant(slot.feed_per_tooth_mm) },
-            { heading: 'Axial depth (mm)', number: true, cell: (slot) => significant(slot.axial_depth_mm) },
-            { heading: 'Spindle speed (rpm)', number: true, optional: true, cell: (slot) => fixed(slot.spindle_speed_rpm, 0) },
-            { heading: 'Mean force x, y, z (N)', number: true, cell: (slot) => force(slot.force_n) },
-            { heading: 'Less the fit (N)', number: true, cell: (slot) => force(slot.residual_n) },
-          ]}
-        />
-      </Details>
+      <DetailsTable
+        summary="Slots one by one"
+        caption="Slots"
+        rows={slots}
+        columns={[
+          { heading: 'Line', number: true, cell: ({ line }) => `${line}` },
+          { heading: 'Feed per tooth (mm)', number: true, cell: (slot) => significant(slot.feed_per_tooth_mm) },
+          { heading: 'Axial depth (mm)', number: true, cell: (slot) => significant(slot.axial_depth_mm) },
+          { heading: 'Spindle speed (rpm)', number: true, optional: true, cell: (slot) => fixed(slot.spindle_speed_rpm, 0) },
+          { heading: 'Mean force x, y, z (N)', number: true, cell: (slot) => force(slot.force_n) },
+          { heading: 'Less the fit (N)', number: true, cell: (slot) => force(slot.residual_n) },
+        ]}
+      />
     </Section>
   );
 }

@@ -2,7 +2,7 @@
 import type { Agreement, ChartPoint, Cut, LobesDocument, Num, Plan, Verdict } from '../documents';
 import { lobesFigure, mapFigure, pairFigure, surfaceFigure } from '../figures/lobes';
 import { polarFigure } from '../figures/polar';
-import { Details, Section, someOf, Table, type Column } from '../parts';
+import { Details, DetailsTable, Section, someOf, Table, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, modeName, significant } from '../text';
 import { feedOf, partOf, type Lobes } from '../views';
@@ -52,16 +52,15 @@ function LimitTable({ lobes }: { lobes: Lobes }) {
   const { spindle_speed_rpm: speed, limit_mm: limit, searched_depth_mm: searched } = lobes;
   if (speed.length === 0) return null;
   return (
-    <Details summary="The limit as a table">
-      <Table
-        caption="Limit depth at some of the computed speeds"
-        rows={someOf(speed.length)}
-        columns={[
-          { heading: 'Spindle speed (rpm)', number: true, cell: (i) => fixed(speed[i]!, 0) },
-          { heading: 'Limit depth (mm)', number: true, cell: (i) => depthText(limit[i]!, searched) },
-        ]}
-      />
-    </Details>
+    <DetailsTable
+      summary="The limit as a table"
+      caption="Limit depth at some of the computed speeds"
+      rows={someOf(speed.length)}
+      columns={[
+        { heading: 'Spindle speed (rpm)', number: true, cell: (i) => fixed(speed[i]!, 0) },
+        { heading: 'Limit depth (mm)', number: true, cell: (i) => depthText(limit[i]!, searched) },
+      ]}
+    />
   );
 }
 

@@ -2,7 +2,7 @@
 import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
 import { chatterNotes, inputFaultText, findings, frequencyText, reasonText } from '../monitor_views';
-import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
+import { Bullets, DetailsTable, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
 
@@ -99,25 +99,23 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
 function EventsTable({ events }: { events: MonitorEvent[] }) {
   if (events.length === 0) return null;
   return (
-    <Details summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}>
-      <Table
-        caption="Events"
-        quiet
-        columns={[
-          { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
-          { heading: 'State', cell: ({ state }) => (state === 'blind' ? 'cannot\u00a0tell' : state) },
-          { heading: 'Score', number: true, cell: (event) => (isState(event) && event.state !== 'blind' ? significant(event.score) : dash) },
-          { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
-          { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
-          { heading: 'Mode', optional: true, cell: (event) => (isState(event) ? modeName(event) : '') },
-          { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
-          { heading: 'Command', optional: true, cell: commandOf },
-          { heading: 'Note', optional: true, cell: noteOf },
-        ]}
-        rows={events}
-        rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
-      />
-    </Details>
+    <DetailsTable
+      summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}
+      caption="Events"
+      columns={[
+        { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
+        { heading: 'State', cell: ({ state }) => (state === 'blind' ? 'cannot\u00a0tell' : state) },
+        { heading: 'Score', number: true, cell: (event) => (isState(event) && event.state !== 'blind' ? significant(event.score) : dash) },
+        { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
+        { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
+        { heading: 'Mode', optional: true, cell: (event) => (isState(event) ? modeName(event) : '') },
+        { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
+        { heading: 'Command', optional: true, cell: commandOf },
+        { heading: 'Note', optional: true, cell: noteOf },
+      ]}
+      rows={events}
+      rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
+    />
   );
 }
 
@@ -162,22 +160,20 @@ function delayOf({ alarm_s: alarm, onset_s: onset }: CalibrationRecording): Num 
 
 function RecordingsTable({ recordings }: { recordings: CalibrationRecording[] }) {
   return (
-    <Details summary={`${recordings.length} recordings, ${recordings.filter(isWrong).length} classified wrongly`}>
-      <Table
-        caption="Recordings and what became of them"
-        quiet
-        columns={[
-          { heading: 'Recording', cell: ({ name }) => name },
-          { heading: 'Label', cell: ({ label }) => label },
-          { heading: 'Used to', cell: ({ half }) => (half === 'verifying' ? 'verify' : 'set') },
-          { heading: 'Alarm', cell: alarmOf },
-          { heading: "After chatter's begin (ms)", number: true, optional: true, cell: (recording) => fixed(delayOf(recording), 0) },
-          { heading: 'Before it is visible (ms)', number: true, optional: true, cell: ({ lead_s: lead }) => fixed(lead === null ? null : 1e3 * lead, 0) },
-        ]}
-        rows={recordings}
-        rowClass={(recording) => (isWrong(recording) ? 'chatter' : '')}
-      />
-    </Details>
+    <DetailsTable
+      summary={`${recordings.length} recordings, ${recordings.filter(isWrong).length} classified wrongly`}
+      caption="Recordings and what became of them"
+      columns={[
+        { heading: 'Recording', cell: ({ name }) => name },
+        { heading: 'Label', cell: ({ label }) => label },
+        { heading: 'Used to', cell: ({ half }) => (half === 'verifying' ? 'verify' : 'set') },
+        { heading: 'Alarm', cell: alarmOf },
+        { heading: "After chatter's begin (ms)", number: true, optional: true, cell: (recording) => fixed(delayOf(recording), 0) },
+        { heading: 'Before it is visible (ms)', number: true, optional: true, cell: ({ lead_s: lead }) => fixed(lead === null ? null : 1e3 * lead, 0) },
+      ]}
+      rows={recordings}
+      rowClass={(recording) => (isWrong(recording) ? 'chatter' : '')}
+    />
   );
 }
 

@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 import type { Recording } from '../documents';
 import { spectrumFigure } from '../figures/spectrum';
 import { Section, Table } from '../parts';
-import { Choice, Plot } from '../plot';
+import { LogChoice, Plot } from '../plot';
 import { fixed, significant } from '../text';
 import { VerdictBadge } from './lobes';
 
@@ -16,7 +16,7 @@ function Spectrum({ recording, index }: { recording: Recording; index: number })
       caption="Peaks on the rotation and tooth-passing lines are the cut itself; strong peaks between them are chatter."
       draw={(theme) => spectrumFigure(recording, logarithmic, theme)}
     >
-      <Choice legend="Amplitude" names={['linear', 'logarithmic']} chosen={Number(logarithmic)} choose={(chosen) => setLogarithmic(chosen === 1)} />
+      <LogChoice legend="Amplitude" logarithmic={logarithmic} choose={setLogarithmic} />
     </Plot>
   );
 }

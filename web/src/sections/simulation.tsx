@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 import type { SimulationDocument, VibrationDocument } from '../documents';
 import { timeFigure, vibrationSpectrumFigure } from '../figures/simulation';
 import { Facts, Section, Table } from '../parts';
-import { Choice, Plot } from '../plot';
+import { LogChoice, Plot } from '../plot';
 import { fixed, percent, significant } from '../text';
 
 function Outcome({ simulation }: { simulation: SimulationDocument }) {
@@ -46,7 +46,7 @@ function Spectrum({ simulation, spectrum }: { simulation: SimulationDocument; sp
       caption={`From ${significant(spectrum.from_s)} s on. Lines on the multiples of the rotation are the cut itself; strong lines between them are chatter.`}
       draw={(theme) => vibrationSpectrumFigure(simulation, spectrum, logarithmic, theme)}
     >
-      <Choice legend="Amplitude" names={['linear', 'logarithmic']} chosen={Number(logarithmic)} choose={(chosen) => setLogarithmic(chosen === 1)} />
+      <LogChoice legend="Amplitude" logarithmic={logarithmic} choose={setLogarithmic} />
     </Plot>
   );
 }

@@ -5,8 +5,8 @@ import { cornerFigure, pathFigure } from '../figures/corners';
 import { jointFigure, speedFigure } from '../figures/smooth';
 import { Bullets, Details, Facts, Section, Table, WarningBox, type Column } from '../parts';
 import { Choice, Plot, type Draw } from '../plot';
-import { boundText, jointShare, limitUses, scaled, smoothedBy, smoothFacts, smoothWarnings, trackingError } from '../smooth_views';
-import { fixed, percent, significant } from '../text';
+import { boundText, jointShare, limitUses, smoothedBy, smoothFacts, smoothWarnings, trackingError } from '../smooth_views';
+import { fixed, percent, scaled, significant } from '../text';
 
 function Verdict({ method }: { method: SmoothedBy }) {
   return (

@@ -4,7 +4,7 @@ import type { ModesDocument, ModeVector, Num, Owner, Pole, StageFile } from '../
 import { convergenceFigure, stabilisationFigure } from '../figures/fit';
 import { frfFigure, prefersLogFrequency } from '../figures/frf';
 import { Bullets, Details, Section, Table, type Column } from '../parts';
-import { Choice, Plot } from '../plot';
+import { Choice, LogChoice, Plot } from '../plot';
 import { dash, percent, significant, withDeviation } from '../text';
 import type { Frf, Hit, Mode } from '../views';
 
@@ -19,7 +19,7 @@ function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predi
   return (
     <Plot which="frf" shows={shows} caption={caption} draw={(theme) => frfFigure(frfs[shown]!, modes, logarithmic, theme)}>
       <Choice legend="FRF" names={frfs.map(({ name }) => name)} chosen={shown} choose={setShown} />
-      <Choice legend="Frequency" names={['linear', 'logarithmic']} chosen={Number(logarithmic)} choose={(chosen) => setLogarithmic(chosen === 1)} />
+      <LogChoice legend="Frequency" logarithmic={logarithmic} choose={setLogarithmic} />
     </Plot>
   );
 }

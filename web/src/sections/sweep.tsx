@@ -1,7 +1,7 @@
 // Stability over speed and another parameter, and methods side by side.
 import type { ComparisonDocument, SweepDocument } from '../documents';
 import { comparisonFigure, sweepFigure } from '../figures/sweep';
-import { Bullets, Details, Section, someOf, Table } from '../parts';
+import { Bullets, DetailsTable, Section, someOf, Table } from '../parts';
 import { Plot } from '../plot';
 import { dash, fixed, percent, significant } from '../text';
 import { intervalsText, sweptOf } from '../verb_views';
@@ -19,16 +19,15 @@ export function SweepSection({ sweep }: { sweep: SweepDocument }) {
         draw={(theme) => sweepFigure(sweep, theme)}
       />
       <PointsTable points={points} heading={`${name} (${unit})`} valueOf={valueOf} />
-      <Details summary="Stable intervals as a table">
-        <Table
-          caption="Stable intervals at some of the computed speeds"
-          rows={someOf(stable.length)}
-          columns={[
-            { heading: 'Spindle speed (rpm)', number: true, cell: (i) => fixed(stable[i]!.spindle_speed_rpm, 0) },
-            { heading: `Stable from ${name.toLowerCase()} (${unit})`, cell: (i) => intervalsText(stable[i]!.intervals) || 'nowhere' },
-          ]}
-        />
-      </Details>
+      <DetailsTable
+        summary="Stable intervals as a table"
+        caption="Stable intervals at some of the computed speeds"
+        rows={someOf(stable.length)}
+        columns={[
+          { heading: 'Spindle speed (rpm)', number: true, cell: (i) => fixed(stable[i]!.spindle_speed_rpm, 0) },
+          { heading: `Stable from ${name.toLowerCase()} (${unit})`, cell: (i) => intervalsText(stable[i]!.intervals) || 'nowhere' },
+        ]}
+      />
     </Section>
   );
 }

@@ -1,7 +1,7 @@
 // Tools in one holder, side by side.
 import type { ToolRow, ToolsDocument } from '../documents';
 import { toolsFigure } from '../figures/tools';
-import { Bullets, Details, Section, Table } from '../parts';
+import { Bullets, DetailsTable, Section, Table } from '../parts';
 import { Plot } from '../plot';
 import { dash, fixed, percent, significant } from '../text';
 
@@ -13,19 +13,17 @@ function Modes({ tools }: { tools: ToolRow[] }) {
   const rows = tools.flatMap(({ tool, modes, fit_relative_error: error }) => modes.map((mode) => ({ tool, error, ...mode })));
   if (rows.length === 0) return null;
   return (
-    <Details summary="Modes of every tool">
-      <Table
-        caption="Modes by tool"
-        quiet
-        rows={rows}
-        columns={[
-          { heading: 'Tool', cell: ({ tool }) => tool },
-          { heading: 'Frequency (Hz)', number: true, cell: (mode) => fixed(mode.frequency_hz, 1) },
-          { heading: 'Damping', number: true, cell: (mode) => percent(mode.damping_ratio, 2) },
-          { heading: 'Error of the fit', number: true, cell: ({ error }) => percent(error, 2) },
-        ]}
-      />
-    </Details>
+    <DetailsTable
+      summary="Modes of every tool"
+      caption="Modes by tool"
+      rows={rows}
+      columns={[
+        { heading: 'Tool', cell: ({ tool }) => tool },
+        { heading: 'Frequency (Hz)', number: true, cell: (mode) => fixed(mode.frequency_hz, 1) },
+        { heading: 'Damping', number: true, cell: (mode) => percent(mode.damping_ratio, 2) },
+        { heading: 'Error of the fit', number: true, cell: ({ error }) => percent(error, 2) },
+      ]}
+    />
   );
 }
 

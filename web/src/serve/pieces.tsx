@@ -82,20 +82,30 @@ export function FaultText({ fault }: { fault: Fault }) {
   );
 }
 
-export function ErrorBox({ error }: { error: ApiError | null }) {
+/** The same as a paragraph. */
+export function FaultLine({ fault, alert }: { fault: Fault; alert?: boolean }) {
   return (
-    <div role="alert">
-      {error && (
-        <p class="error">
-          <FaultText fault={error.fault} />
-        </p>
-      )}
-    </div>
+    <p class="error" role={alert ? 'alert' : undefined}>
+      <FaultText fault={fault} />
+    </p>
+  );
+}
+
+export function ErrorBox({ error }: { error: ApiError | null }) {
+  return <div role="alert">{error && <FaultLine fault={error.fault} />}</div>;
+}
+
+/** A row of controls; what is done when it is sent. */
+export function ButtonForm({ send, children }: { send: () => void; children: ComponentChildren }) {
+  return (
+    <form class="buttons" onSubmit={(event) => (event.preventDefault(), send())}>
+      {children}
+    </form>
   );
 }
 
 /** A labelled control in a column of such. */
-export function Labelled({ label, children, help }: { label: string; children: ComponentChildren; help?: ComponentChildren }) {
+export function Labelled({ label, children, help }: { label: string; children: ComponentChildren; help?: ComponentChildren | undefined }) {
   return (
     <label class="labelled">
       <span>{label}</span>
@@ -105,10 +115,29 @@ export function Labelled({ label, children, help }: { label: string; children: C
   );
 }
 
+interface TextBoxProps {
+  inputMode?: 'decimal';
+  placeholder?: string;
+  required?: boolean;
+  label: string;
+  help?: string;
+  value: string;
+  type: (text: string) => void;
+}
+
+/** A labelled line of text. */
+export function TextBox({ label, help, type, ...input }: TextBoxProps) {
+  return (
+    <Labelled label={label} help={help}>
+      <input type="text" spellcheck={false} autocomplete="off" {...input} onInput={({ currentTarget }) => type(currentTarget.value)} />
+    </Labelled>
+  );
+}
+
 interface SelectProps {
   label: string;
   value: string;
-  options: readonly { value: string; name: string }[];
+  options: readonly (string | { value: string; name: string })[]; // a text: its own name
   choose: (value: string) => void;
   quiet?: boolean; // the label is only for who cannot see the heading above it
 }
@@ -116,11 +145,13 @@ interface SelectProps {
 export function Select({ label, value, options, choose, quiet }: SelectProps) {
   const control = (
     <select aria-label={quiet ? label : undefined} value={value} onChange={({ currentTarget }) => choose(currentTarget.value)}>
-      {options.map((option) => (
-        <option value={option.value} selected={option.value === value}>
-          {option.name}
-        </option>
-      ))}
+      {options
+        .map((option) => (typeof option === 'string' ? { value: option, name: option } : option))
+        .map((option) => (
+          <option value={option.value} selected={option.value === value}>
+            {option.name}
+          </option>
+        ))}
     </select>
   );
   return quiet ? control : <Labelled label={label}>{control}</Labelled>;

@@ -19,7 +19,7 @@ import { laterTap, withFolder, withJob } from './later';
 import { LobesView, PointPanel, resetAll } from './lobes/lobes';
 import { faultText } from './pieces';
 import { href, parseRoute } from './route';
-import { durationText, leftText, Outcome, Progress } from './jobs/running';
+import { Course, durationText, leftText, Outcome } from './jobs/running';
 import { ModeSwitches, Slider } from './lobes/sliders';
 import { countText, TapView } from './tap/tap';
 import { writeChanges } from './lobes/write_back';
@@ -163,7 +163,7 @@ describe('editor', () => {
 
 describe('jobs', () => {
   it('say how far they are and what is left', () => {
-    const html = renderToString(<Progress job={job} cancel={() => {}} error={null} />);
+    const html = shown(<Course job={job} />);
     for (const part of ['stability lobes', 'value="0.4"', '40 %', 'about 18 s left', 'Cancel']) expect(html).toContain(part);
     expect(leftText({ seconds: 1, fraction: 0.001 })).toBe('');
     expect([0.52, 59.6, 125, 3600, null].map(durationText)).toEqual(['0.5 s', '1 min', '2 min 5 s', '60 min', '–']);
@@ -269,7 +269,7 @@ describe('tap test', () => {
       { number: 1, file: 'x_1.csv', accepted: true, excluded: false, reasons: [], force_direction: 'x', peak_force_n: 212 },
       { number: 2, file: 'x_2.csv', accepted: false, excluded: false, reasons: ['double hit'], force_direction: 'x', peak_force_n: null },
     ],
-    frf: { frequency_hz: [1, 2], receptance_m_per_n: { xx: { re: [1e-6, 2e-6], im: [0, 0] } }, coherence: { xx: [1, 1] } },
+    frf: { document: 'frf/1', frequency_hz: [1, 2], receptance_m_per_n: { xx: { re: [1e-6, 2e-6], im: [0, 0] } }, coherence: { xx: [1, 1] } },
     peaks: [{ frequency_hz: 540.1, name: 'xx', receptance_m_per_n: 8.3e-6, coherence: 0.994 }],
   };
   it('begins with settings and a folder', () => {

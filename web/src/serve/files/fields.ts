@@ -1,4 +1,5 @@
 // The keys of a file as a form: names and units in words, groups by table.
+import { capital } from '../../text';
 import type { Fault, Field, Value } from '../documents';
 
 export interface Unit {
@@ -65,11 +66,6 @@ export interface KeyName {
   unit: Unit | null;
 }
 
-function sentence(words: string[]): string {
-  const text = words.join(' ');
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
 /** Of keys whose last part says too little without its table. */
 const ownNames: Record<string, string> = { 'coefficients.scale': 'Scale of the coefficients' };
 
@@ -81,9 +77,9 @@ export function nameOf(key: string): KeyName {
   const words = last.split('_');
   for (let i = 1; i < words.length; ++i) {
     const unit = unitFrom(words.slice(i));
-    if (unit) return { name: sentence(words.slice(0, i)), unit };
+    if (unit) return { name: capital(words.slice(0, i).join(' ')), unit };
   }
-  return { name: sentence(words), unit: null };
+  return { name: capital(words.join(' ')), unit: null };
 }
 
 /** "Radial depth (mm)". */
@@ -113,7 +109,7 @@ export function groupFields(fields: Field[]): FieldGroup[] {
 function headingOf(table: string): string {
   if (table === '') return 'General';
   const parts = table.split('.').map((part) => part.replace(/_/g, ' ').replace(/\[(\d+)\]/g, (_, index: string) => ` ${Number(index) + 1}`));
-  return sentence([parts.join(', ')]);
+  return capital(parts.join(', '));
 }
 
 /** A value as it is typed: lists with commas. */

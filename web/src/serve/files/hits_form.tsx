@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 import { Bullets } from '../../parts';
 import { fixed } from '../../text';
 import { useAction, useServe } from '../context';
-import { Button, ErrorBox, Labelled, Panel, Select } from '../pieces';
+import { Button, ErrorBox, Panel, Select, TextBox } from '../pieces';
 import { href } from '../route';
 import { columnsOf, directionOf, firstAnswers, force_units, hitsToml, isVoltage, missingAnswers, response_units, sensorUnit, type Answers, type Recording, type ResponseKind, type Role } from './hits_text';
 
@@ -57,14 +57,6 @@ function Directions({ recordings, answers, answer }: QuestionsProps) {
   );
 }
 
-function NumberBox({ label, value, type, help }: { label: string; value: string; type: (text: string) => void; help?: string }) {
-  return (
-    <Labelled label={label} {...(help === undefined ? {} : { help })}>
-      <input type="text" inputMode="decimal" autocomplete="off" value={value} onInput={({ currentTarget }) => type(currentTarget.value)} />
-    </Labelled>
-  );
-}
-
 function Units({ answers, answer }: QuestionsProps) {
   const { response } = answers;
   const sheet = 'Stands on the calibration sheet.';
@@ -74,11 +66,11 @@ function Units({ answers, answer }: QuestionsProps) {
       <Select label="The response is a" value={response} options={kinds} choose={(kind) => answer({ response: kind as ResponseKind, response_unit: response_units[kind as ResponseKind][0]!.unit })} />
       <Select label="Unit of the response" value={answers.response_unit} options={named(response_units[response])} choose={(response_unit) => answer({ response_unit })} />
       {isVoltage(answers.response_unit) && (
-        <NumberBox label={`Sensitivity of the response (mV per ${sensorUnit(response)})`} help={sheet} value={answers.response_mv_per_unit} type={(text) => answer({ response_mv_per_unit: text })} />
+        <TextBox inputMode="decimal" label={`Sensitivity of the response (mV per ${sensorUnit(response)})`} help={sheet} value={answers.response_mv_per_unit} type={(text) => answer({ response_mv_per_unit: text })} />
       )}
       <Select label="Unit of the force" value={answers.force_unit} options={named(force_units)} choose={(force_unit) => answer({ force_unit })} />
-      {isVoltage(answers.force_unit) && <NumberBox label="Sensitivity of the hammer (mV per N)" help={sheet} value={answers.force_mv_per_n} type={(text) => answer({ force_mv_per_n: text })} />}
-      {!answers.roles.includes('time') && <NumberBox label="Sampling rate (Hz)" value={answers.sample_rate_hz} type={(text) => answer({ sample_rate_hz: text })} />}
+      {isVoltage(answers.force_unit) && <TextBox inputMode="decimal" label="Sensitivity of the hammer (mV per N)" help={sheet} value={answers.force_mv_per_n} type={(text) => answer({ force_mv_per_n: text })} />}
+      {!answers.roles.includes('time') && <TextBox inputMode="decimal" label="Sampling rate (Hz)" value={answers.sample_rate_hz} type={(text) => answer({ sample_rate_hz: text })} />}
     </fieldset>
   );
 }
@@ -137,9 +129,7 @@ export function HitsForm({ recordings, forms, taken }: HitsFormProps) {
         </details>
       )}
       <div class="buttons">
-        <Labelled label="File">
-          <input type="text" value={path} spellcheck={false} autocomplete="off" onInput={({ currentTarget }) => change({ path: currentTarget.value })} />
-        </Labelled>
+        <TextBox label="File" value={path} type={(text) => change({ path: text })} />
         <Button main act={() => void act(write)} disabled={busy || text === '' || path.trim() === ''}>
           Write it
         </Button>

@@ -2,7 +2,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { useAction, useServe } from '../context';
 import type { FileEntry, FileKind, VerbOption } from '../documents';
-import { ErrorBox, Labelled, Select } from '../pieces';
+import { ErrorBox, Select, TextBox } from '../pieces';
 import { filesOf, proposedOutput, runsOf, type Run } from '../verbs';
 import { jobRequest, wrongOptions, type Typed } from './run_options';
 
@@ -151,13 +151,7 @@ function OneRun({ run, path, save, dirty, started }: Omit<RunFormProps, 'kind'> 
   open.current ||= others.some(({ name }) => wrong[name] !== undefined);
   const noInput = tried && inputs.length === 0 ? 'Needed.' : null;
   return (
-    <form
-      ref={form}
-      onSubmit={(event) => {
-        event.preventDefault();
-        void act(start);
-      }}
-    >
+    <form ref={form} onSubmit={(event) => (event.preventDefault(), void act(start))}>
       <div class="questions">
         {verb.several && <FileBoxes legend="Files" files={withFile(filesOf(files, verb.inputs), path, verb.inputs[0]!)} chosen={inputs} choose={setInputs} id="run-inputs" wrong={noInput} />}
         {!verb.several && as !== null && (
@@ -179,9 +173,7 @@ function OneRun({ run, path, save, dirty, started }: Omit<RunFormProps, 'kind'> 
         </details>
       )}
       <div class="buttons run">
-        <Labelled label="Results to (empty: nothing is written)">
-          <input type="text" value={to} spellcheck={false} autocomplete="off" onInput={({ currentTarget }) => setOutput(currentTarget.value)} />
-        </Labelled>
+        <TextBox label="Results to (empty: nothing is written)" value={to} type={setOutput} />
         <button type="submit" class="main" disabled={busy}>
           {dirty ? `Save; ${verb.does.charAt(0).toLowerCase()}${verb.does.slice(1)}` : verb.does}
         </button>

@@ -5,7 +5,7 @@ import { Page } from '../../page';
 import { dash } from '../../text';
 import { useAction, useAnswer, useServe } from '../context';
 import type { Job } from '../documents';
-import { Button, ErrorBox, FaultText, Panel } from '../pieces';
+import { Button, ErrorBox, FaultLine, Panel } from '../pieces';
 import { href } from '../route';
 
 export function isOver({ state }: Job): boolean {
@@ -33,7 +33,9 @@ export function stateText(job: Job): string {
   return job.state === 'done' && job.exit === 3 ? 'done, but the answer was not reached' : states[job.state];
 }
 
-export function Progress({ job, cancel, error }: { job: Job; cancel: () => void; error: ReturnType<typeof useAction>['error'] }) {
+function Progress({ job }: { job: Job }) {
+  const { api } = useServe();
+  const { error, act } = useAction();
   const percent = Math.round(100 * job.fraction);
   return (
     <div class="progress">
@@ -45,7 +47,7 @@ export function Progress({ job, cancel, error }: { job: Job; cancel: () => void;
         {percent} % · {durationText(job.seconds)}
         {leftText(job) !== '' && ` · ${leftText(job)}`}
       </span>
-      <Button act={cancel}>Cancel</Button>
+      <Button act={() => void act(() => api.cancel(job.id))}>Cancel</Button>
       <ErrorBox error={error} />
     </div>
   );
@@ -97,20 +99,20 @@ export function Outcome({ job }: { job: Job }) {
           The answer was not reached: {job.shortfall}.
         </p>
       )}
-      {job.error && (
-        <p class="error" role="alert">
-          <FaultText fault={job.error} />
-        </p>
-      )}
+      {job.error && <FaultLine fault={job.error} alert />}
       {job.summary !== null && job.summary !== '' && (job.report ? <details><summary>Summary</summary><pre>{job.summary}</pre></details> : <pre>{job.summary}</pre>)}
     </>
   );
 }
 
+/** How far it is, or how it ended. */
+export function Course({ job }: { job: Job }) {
+  return isOver(job) ? <Outcome job={job} /> : <Progress job={job} />;
+}
+
 /** Progress, then the result. */
 export function Running({ job }: { job: Job }) {
-  const { api, announce } = useServe();
-  const { error, act } = useAction();
+  const { announce } = useServe();
   const [said, setSaid] = useState(job.state);
   useEffect(() => {
     if (said !== job.state) announce(`${job.verb} of ${job.input}: ${stateText(job)}`);
@@ -119,7 +121,7 @@ export function Running({ job }: { job: Job }) {
   return (
     <>
       <Panel heading={isOver(job) ? 'Result' : 'Progress'} name="run">
-        {isOver(job) ? <Outcome job={job} /> : <Progress job={job} error={error} cancel={() => void act(() => api.cancel(job.id))} />}
+        <Course job={job} />
       </Panel>
       {job.report && isOver(job) && <Result key={job.id} id={job.id} />}
     </>

@@ -1,10 +1,11 @@
 // The lobes with the operating point on them, which can be dragged.
-import { useCallback, useMemo, useRef, useState } from 'preact/hooks';
+import { useCallback, useMemo, useRef } from 'preact/hooks';
 import type { Theme } from '../../figures/theme';
 import { Plot } from '../../plot';
 import { sweptOf } from '../../verb_views';
 import { recordLatency } from '../latency';
-import { chartHeight, frameOf, fromPixels, liveFigure, liveSweepFigure, toPixels, type Frame } from './figure';
+import { fromPixels, toPixels, useFrame, type Frame } from '../frame';
+import { chartHeight, liveFigure, liveSweepFigure } from './figure';
 import type { Curves } from './live';
 import { placed, stepOf, type Point, type Ranges } from './settings';
 
@@ -77,22 +78,12 @@ function useMeasured(curves: Curves): () => void {
   };
 }
 
-/** Plotly's own zoom moves the place of the point, too. */
-interface Listening {
-  on?: (event: 'plotly_afterplot', listener: () => void) => void;
-}
-
 export function Chart({ curves, name, kept, point, ...handle }: ChartProps) {
-  const [frame, setFrame] = useState<Frame | null>(null);
-  const listening = useRef<HTMLElement | null>(null);
+  const { frame, drawn: find } = useFrame();
   const measured = useMeasured(curves);
-  const find = (root: HTMLElement) => setFrame((before) => ((found) => (JSON.stringify(found) === JSON.stringify(before) ? before : found))(frameOf(root)));
   const drawn = (root: HTMLElement) => {
     measured();
-    if (listening.current === root) return;
-    listening.current = root;
     find(root);
-    (root as Listening).on?.('plotly_afterplot', () => find(root));
   };
   const { sweep } = curves;
   const overlay = useMemo(() => kept && { lobes: kept.curves.lobes, sweep: kept.curves.sweep, name: kept.name }, [kept?.curves, kept?.name]);

@@ -2,7 +2,8 @@ import { describe, expect, it } from 'vitest';
 import { light } from '../../figures/theme';
 import type { Lobes } from '../../views';
 import { tapFigure } from '../tap/figure';
-import { chartHeight, fromPixels, liveFigure, toPixels, type Frame } from './figure';
+import { fromPixels, toPixels, type Frame } from '../frame';
+import { chartHeight, liveFigure } from './figure';
 
 const lobes: Lobes = {
   label: '',

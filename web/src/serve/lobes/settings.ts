@@ -1,6 +1,6 @@
 // What the sliders say, what of it differs from the file or from a kept curve, and what is known of the operating point.
 import type { ChartPoint, LimitRow, Num } from '../../documents';
-import { general } from '../../text';
+import { general, modeName } from '../../text';
 import { valueAt, type Lobes } from '../../views';
 import type { Movable, Value } from '../documents';
 import { nameOf } from '../files/fields';
@@ -135,11 +135,6 @@ export interface PointFacts {
   mode: string;
 }
 
-export function modeText(row: Pick<LimitRow, 'mode' | 'mode_of'> | undefined): string {
-  if (row?.mode == null) return '';
-  return `mode ${row.mode}${row.mode_of === 'workpiece' ? ' of the workpiece' : ''}`;
-}
-
 function nearest(rows: LimitRow[], speed: number): LimitRow | undefined {
   const away = (row: LimitRow) => Math.abs(row.spindle_speed_rpm - speed);
   return rows.filter((row) => row.axial_depth_mm !== null && row.chatter_frequency_hz != null).reduce<LimitRow | undefined>((best, row) => (best && away(best) <= away(row) ? best : row), undefined);
@@ -158,7 +153,7 @@ export function pointFacts([speed, depth]: Point, lobes: Lobes, limit: LimitRow[
     searched_mm: lobes.searched_depth_mm,
     margin: here?.margin ?? (limit_mm === null || limit_mm === 0 ? null : 1 - depth / limit_mm),
     frequency_hz: (chatters ? here.dominant_frequency_hz : next?.chatter_frequency_hz) ?? null,
-    mode: modeText(chatters ? here : next),
+    mode: modeName(chatters ? here : next),
   };
 }
 

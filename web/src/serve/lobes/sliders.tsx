@@ -6,7 +6,7 @@ import { NumberBox } from '../number_box';
 import { Button } from '../pieces';
 
 interface SliderProps extends Movable {
-  name: string; // of the key, "cut.radial_depth_mm"
+  name: string; // of the key, "tool.teeth"
   first: number; // what reset goes back to
   locked: boolean;
   wrong: string | null;

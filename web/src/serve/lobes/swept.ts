@@ -1,7 +1,9 @@
 // A sweep that follows the sliders: its ranges, and what is known of the operating point in it.
 import type { ChartPoint, Num, SweepDocument } from '../../documents';
+import { nearest } from '../../decision_views';
+import { modeName } from '../../text';
 import { intervalsText, sweptOf } from '../../verb_views';
-import { isHere, modeText, placed, type Point, type Ranges } from './settings';
+import { isHere, placed, type Point, type Ranges } from './settings';
 
 /** The key of its slider, as others are named. */
 export function sweptKey(sweep: SweepDocument): string {
@@ -29,15 +31,11 @@ export interface SweptFacts {
   mode: string;
 }
 
-function nearestIn(list: number[], value: number): number {
-  return list.reduce((best, one, i) => (Math.abs(one - value) < Math.abs(list[best]! - value) ? i : best), 0);
-}
-
 export function sweptFacts([speed, value]: Point, sweep: SweepDocument, points: ChartPoint[]): SweptFacts {
   const { values, valueOf } = sweptOf(sweep);
   const here = points.find((point) => isHere(point.spindle_speed_rpm, speed) && isHere(valueOf(point), value));
-  const column = nearestIn(sweep.spindle_speed_rpm, speed);
-  const row = nearestIn(values, value);
+  const column = nearest(sweep.spindle_speed_rpm, speed);
+  const row = nearest(values, value);
   const radius = here ? here.spectral_radius : (sweep.spectral_radius[row]?.[column] ?? null);
   const stable = here?.stable ?? (radius !== null && radius < 1);
   return {
@@ -46,6 +44,6 @@ export function sweptFacts([speed, value]: Point, sweep: SweepDocument, points: 
     spectral_radius: radius,
     intervals: intervalsText(sweep.stable[column]?.intervals ?? []),
     frequency_hz: stable ? null : (here?.dominant_frequency_hz ?? null),
-    mode: stable ? '' : modeText(here),
+    mode: stable ? '' : modeName(here),
   };
 }

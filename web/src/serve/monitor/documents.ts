@@ -1,10 +1,11 @@
 // What page and server say to each other of spindles that are monitored.
-import type { Assumption, Num, Owner } from '../../documents';
-import type { MonitorState, NoSpeed } from '../../recorded';
+import type { Assumption, MonitorAlarm, MonitorState, Num } from '../../documents';
 import type { Fault } from '../documents';
 
+type Chatter = Pick<MonitorAlarm, 'chatter_frequency_hz' | 'chatter_frequency_std_hz' | 'mode' | 'mode_of' | 'suggested_spindle_speed_rpm' | 'no_speed'>;
+
 /** A moment; of several what was gravest. */
-export interface MonitorFrame {
+export interface MonitorFrame extends Chatter {
   clock_s: number; // since the session began
   time_s: number; // of the stream
   state: MonitorState;
@@ -12,12 +13,6 @@ export interface MonitorFrame {
   score: Num;
   threshold: Num;
   spindle_speed_rpm: Num;
-  chatter_frequency_hz: Num;
-  chatter_frequency_std_hz: Num;
-  mode: Num;
-  mode_of: Owner | null;
-  suggested_spindle_speed_rpm: Num;
-  no_speed: NoSpeed | null;
   faults: string[];
   compute_us: Num;
   pace: Num; // seconds of the stream a second
@@ -26,7 +21,7 @@ export interface MonitorFrame {
 }
 
 /** A stay in chatter, one whose state is undetermined, or a notice about the samples. */
-export interface MonitorRow {
+export interface MonitorRow extends Chatter, Pick<MonitorAlarm, 'low_frequency_hz' | 'high_frequency_hz' | 'channel' | 'hidden' | 'line_frequencies_hz'> {
   number: number; // from 1
   kind: 'chatter' | 'blind' | 'notice';
   clock_s: number;
@@ -34,17 +29,6 @@ export interface MonitorRow {
   to_s: Num; // null: it lasts
   reason: string | null;
   score: Num;
-  low_frequency_hz: Num;
-  high_frequency_hz: Num;
-  chatter_frequency_hz: Num;
-  chatter_frequency_std_hz: Num;
-  channel: string | null;
-  hidden: 'locked' | 'period-doubling' | null;
-  mode: Num;
-  mode_of: Owner | null;
-  suggested_spindle_speed_rpm: Num;
-  line_frequencies_hz: number[];
-  no_speed: NoSpeed | null;
   what: string | null;
   count: number;
   message: string | null;

@@ -1,5 +1,5 @@
 // What someone who cannot see the spindles is told of them.
-import type { MonitorState } from '../../recorded';
+import type { MonitorState } from '../../documents';
 import { dash, modeName } from '../../text';
 import type { MonitorFrame } from './documents';
 import { chatterText, stateText } from './text';

@@ -1,6 +1,6 @@
 // The live spectrogram and the strip of scores below it: pixels that move to the left.
 import type { Theme } from '../../figures/theme';
-import type { MonitorState } from '../../recorded';
+import type { MonitorState } from '../../documents';
 import { emptyColumn, noLevel, type Column, type FrameRing } from './ring';
 
 export const deepest_db = 50; // below the highest; noise hides what lies lower

@@ -1,5 +1,5 @@
 // Frames of a spindle in memory that does not grow, and what of them a column of pixels shows.
-import type { MonitorState } from '../../recorded';
+import type { MonitorState } from '../../documents';
 import type { MonitorFrame } from './documents';
 
 const letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_';

@@ -7,7 +7,7 @@ import { AssumedBox } from '../../sections/assumed';
 import { dash, fixed, modeName, significant } from '../../text';
 import type { Fact } from '../../documents';
 import { useAnswer, useServe } from '../context';
-import { ErrorBox, FaultText, Select } from '../pieces';
+import { ErrorBox, FaultLine, Panel, Select } from '../pieces';
 import { LiveSpectrogram } from './canvas';
 import type { MonitorFrame, MonitorRow, MonitorSession, MonitorSummary } from './documents';
 import type { MonitorFeed } from './feed';
@@ -66,11 +66,7 @@ export function Now({ summary }: { summary: MonitorSummary }) {
       <h2>
         Now <StateBadge summary={summary} />
       </h2>
-      {error !== null && (
-        <p class="error" role="alert">
-          <FaultText fault={error} />
-        </p>
-      )}
+      {error !== null && <FaultLine fault={error} alert />}
       {frame !== null && !isOver(summary) && <KeyFigures figures={keyFigures(frame)} />}
       <Facts facts={factsOf(summary)} />
     </section>
@@ -118,14 +114,13 @@ function Shown({ session, feed, chatter_hz }: { session: MonitorSession; feed: M
   useEffect(() => widen((now) => Math.max(now, highestFor(choices, chatter_hz))), [chatter_hz]);
   const shown_hz = chosen ?? highest;
   return (
-    <section aria-label="Spectrogram">
-      <h2>Spectrogram</h2>
+    <Panel heading="Spectrogram">
       <div class="controls">
         <Choice legend="Shown" names={spans.map(({ name }) => name)} chosen={span} choose={setSpan} />
         <Select label="Up to" value={String(shown_hz)} options={choices.map((choice) => ({ value: String(choice), name: `${fixed(choice, 0)} Hz` }))} choose={(value) => choose(Number(value))} />
       </div>
       <LiveSpectrogram ring={ring} id={session.id} feed={feed} edges_hz={session.edges_hz} teeth={session.teeth} highest_hz={shown_hz} span_s={spans[span]!.span_s} />
-    </section>
+    </Panel>
   );
 }
 
@@ -158,10 +153,7 @@ function History({ session, feed }: { session: MonitorSession; feed: MonitorFeed
   const rows = useRows(session, feed);
   const table = useMemo(() => <HistoryTable rows={rows} summary={session} />, [rows]);
   return (
-    <section aria-label="History">
-      <h2>History</h2>
-      {rows.length === 0 ? <p>No alarm yet.</p> : table}
-    </section>
+    <Panel heading="History">{rows.length === 0 ? <p>No alarm yet.</p> : table}</Panel>
   );
 }
 

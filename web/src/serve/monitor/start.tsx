@@ -2,7 +2,7 @@
 import { useState } from 'preact/hooks';
 import { useAction, useServe } from '../context';
 import type { FileEntry } from '../documents';
-import { ErrorBox, Labelled, Panel, Select } from '../pieces';
+import { ButtonForm, ErrorBox, Labelled, Panel, Select, TextBox } from '../pieces';
 import { goTo, href } from '../route';
 import { isRecording } from '../verbs';
 
@@ -41,19 +41,11 @@ export function StartMonitor({ path }: { path: string }) {
   }
   return (
     <Panel heading="Monitor a spindle" name="monitor-start">
-      <form
-        class="buttons"
-        onSubmit={(event) => {
-          event.preventDefault();
-          void act(start);
-        }}
-      >
-        <Select label="Settings" value={config} options={configs.map((file) => ({ value: file, name: file }))} choose={chooseConfig} />
-        <Select label="Samples from" value={input} options={[...recordings.map((file) => ({ value: file.path, name: file.path })), { value: stream, name: 'a stream of a broker (MQTT)' }]} choose={chooseInput} />
+      <ButtonForm send={() => void act(start)}>
+        <Select label="Settings" value={config} options={configs} choose={chooseConfig} />
+        <Select label="Samples from" value={input} options={[...recordings.map((file) => file.path), { value: stream, name: 'a stream of a broker (MQTT)' }]} choose={chooseInput} />
         {input === stream ? (
-          <Labelled label="Address (empty: mqtt.topic of the settings)">
-            <input type="text" value={address} placeholder="mqtt://HOST/TOPIC" spellcheck={false} autocomplete="off" onInput={({ currentTarget }) => setAddress(currentTarget.value)} />
-          </Labelled>
+          <TextBox label="Address (empty: mqtt.topic of the settings)" value={address} placeholder="mqtt://HOST/TOPIC" type={setAddress} />
         ) : (
           <Labelled label="Speed, times its own">
             <input type="number" min={1} max={fastest} step="any" required value={speed} onInput={({ currentTarget }) => setSpeed(currentTarget.value)} />
@@ -62,7 +54,7 @@ export function StartMonitor({ path }: { path: string }) {
         <button type="submit" class="main" disabled={busy || config === ''}>
           Start
         </button>
-      </form>
+      </ButtonForm>
       <ErrorBox error={error} />
     </Panel>
   );

@@ -1,5 +1,5 @@
 // What is said of monitored spindles.
-import type { MonitorState } from '../../recorded';
+import type { MonitorState } from '../../documents';
 import { chatterNotes, reasonText } from '../../monitor_views';
 import { dash, fixed, withDeviation } from '../../text';
 import type { MonitorFrame, MonitorRow, MonitorSummary } from './documents';

@@ -6,7 +6,7 @@ import { useAction, useServe } from '../context';
 import type { Job } from '../documents';
 import { Arrivals, useReceived } from '../files/arrivals';
 import { FileInput } from '../files/files';
-import { isOver, Outcome, Progress } from '../jobs/running';
+import { Course, isOver } from '../jobs/running';
 import { Button, ErrorBox, FaultText, Panel, View } from '../pieces';
 import { href } from '../route';
 import { proposedOutput } from '../verbs';
@@ -110,13 +110,12 @@ export function StagesTable({ overview, plan }: { overview: Overview; plan: RunP
 
 /** What was started: how far it is, how it ended. */
 function Run({ plan: { job, error } }: { plan: RunPlan }) {
-  const { api, folder } = useServe();
-  const cancelling = useAction();
+  const { folder } = useServe();
   if (!job) return <ErrorBox error={error} />;
   const reported = isOver(job) ? reportedRun(folder?.jobs ?? [], job.input) : undefined;
   return (
     <Panel heading={isOver(job) ? 'Result' : 'Progress'} name="run">
-      {isOver(job) ? <Outcome job={job} /> : <Progress job={job} error={cancelling.error} cancel={() => void cancelling.act(() => api.cancel(job.id))} />}
+      <Course job={job} />
       {reported && (
         <p>
           <a href={href('jobs', String(reported.id))}>Its report</a>
@@ -185,10 +184,9 @@ export function OneJob({ overview }: { overview: Overview }) {
       </p>
       <Next overview={overview} plan={plan} />
       <Run plan={plan} />
-      <section aria-label="Stages">
-        <h2>Stages</h2>
+      <Panel heading="Stages">
         <StagesTable overview={overview} plan={plan} />
-      </section>
+      </Panel>
       <Dropped />
     </View>
   );
@@ -255,8 +253,7 @@ export function JobList({ jobs }: { jobs: string[] }) {
 function NoJob() {
   return (
     <View heading="No job yet" lead="A job goes from hammer hits and a cut to a speed and a depth without chatter.">
-      <section aria-label="How to begin">
-        <h2>How to begin</h2>
+      <Panel heading="How to begin">
         <Bullets
           texts={[
             'Put the records of your hammer hits into the folder, or drop them here.',
@@ -267,7 +264,7 @@ function NoJob() {
         <p>
           <a href={href('files')}>All files</a>
         </p>
-      </section>
+      </Panel>
       <Dropped />
     </View>
   );

@@ -1,9 +1,8 @@
 // The map of γ below a line that is dragged, and the curve of the margin under it.
-import type { GammaMap } from '../../decision';
-import type { Num } from '../../documents';
+import type { GammaMap, Num } from '../../documents';
 import { gammaFigure } from '../../figures/gamma_map';
 import type { Figure, Theme, Trace } from '../../figures/theme';
-import type { Frame } from '../lobes/figure';
+import type { Frame } from '../frame';
 import type { GammaLine } from './gamma_line';
 
 /** As high as the window permits. */

@@ -1,7 +1,6 @@
 // A line of γ over the path: straight between its knots, constant beyond them.
-import type { GammaMap } from '../../decision';
+import type { GammaMap, Num } from '../../documents';
 import { marginAt } from '../../decision_views';
-import type { Num } from '../../documents';
 
 export type Knot = [path_mm: number, gamma_deg: number];
 export type GammaLine = Knot[];

@@ -1,7 +1,6 @@
 // The line of γ with its map, its buttons and its numbers.
-import type { GammaMap } from '../../decision';
+import type { GammaMap, Num } from '../../documents';
 import { nearest } from '../../decision_views';
-import type { Num } from '../../documents';
 import { Table } from '../../parts';
 import { fixed, significant } from '../../text';
 import { NumberBox } from '../number_box';

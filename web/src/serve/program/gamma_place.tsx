@@ -1,12 +1,11 @@
 // The map with the line of γ on it, which can be dragged: the map is drawn once, the line over it at each movement.
-import { useCallback, useMemo, useRef, useState } from 'preact/hooks';
-import type { GammaMap } from '../../decision';
+import { useCallback, useMemo, useRef } from 'preact/hooks';
+import type { GammaMap, Num } from '../../documents';
 import { nearest } from '../../decision_views';
-import type { Num } from '../../documents';
 import { BlockSteps } from '../../parts';
 import { narrow, Plot, type Draw } from '../../plot';
 import { fixed, significant } from '../../text';
-import { frameOf, fromPixels, type Frame } from '../lobes/figure';
+import { fromPixels, useFrame, type Frame } from '../frame';
 import { apart, linePoints, liveGammaFigure, mapHeight, pixelsAt } from './gamma_figure';
 import { chosenMargins, gammaAt, placeOfBlock, shifted, withGamma, withoutKnot, type GammaLine, type Knot, type LineBounds } from './gamma_line';
 import { MarginCurve } from './margin_curve';
@@ -192,25 +191,6 @@ function Handles({ frame, line, bounds, map, margins, remove, ...moves }: Overla
       />
     </>
   );
-}
-
-/** Plotly's own zoom moves the place of the line, too. */
-interface Listening {
-  on?: (event: 'plotly_afterplot', listener: () => void) => void;
-}
-
-/** Where the map lies, after each drawing of it. */
-function useFrame(): { frame: Frame | null; drawn: (root: HTMLElement) => void } {
-  const [frame, setFrame] = useState<Frame | null>(null);
-  const listening = useRef<HTMLElement | null>(null);
-  const find = (root: HTMLElement) => setFrame((before) => ((found) => (JSON.stringify(found) === JSON.stringify(before) ? before : found))(frameOf(root)));
-  const drawn = (root: HTMLElement) => {
-    find(root);
-    if (listening.current === root) return;
-    listening.current = root;
-    (root as Listening).on?.('plotly_afterplot', () => find(root));
-  };
-  return { frame, drawn };
 }
 
 interface GammaPlaceProps extends LineProps {

@@ -1,10 +1,9 @@
 // The margin along the line of γ, below its map and as wide.
 import { useMemo } from 'preact/hooks';
-import type { GammaMap } from '../../decision';
-import type { Num } from '../../documents';
+import type { GammaMap, Num } from '../../documents';
 import { scaleEnd } from '../../figures/gamma_map';
 import { general } from '../../text';
-import type { Frame } from '../lobes/figure';
+import type { Frame } from '../frame';
 import { curvePath } from './gamma_figure';
 import { lineMargin } from './gamma_line';
 import type { EvaluatedGamma } from './documents';

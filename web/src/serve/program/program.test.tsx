@@ -2,16 +2,16 @@
 import type { ComponentChildren } from 'preact';
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
-import type { Decision, GammaMap } from '../../decision';
+import type { BlocksDocument, Decision, GammaMap } from '../../documents';
 import { blocksSample } from '../../blocks_sample';
-import type { BlocksDocument, Report } from '../../documents';
 import { light } from '../../figures/theme';
 import { pathData, samePlaces } from '../../path_views';
 import { Selection } from '../../selection';
 import { openApi } from '../api';
 import { ServeContext, type Serve } from '../context';
 import type { FileEntry, FolderState, Job } from '../documents';
-import type { Frame } from '../lobes/figure';
+import { sampleReport } from '../../report_sample';
+import type { Frame } from '../frame';
 import { apart, curvePath, linePoints, liveGammaFigure, mapHeight, pixelsAt } from './gamma_figure';
 import { boundsOf, lineAlong, lineMargin, marginsAlong, type GammaLine } from './gamma_line';
 import { GammaPanel, Knots } from './gamma_panel';
@@ -56,7 +56,8 @@ const document: BlocksDocument = {
   summary: { ...blocksSample.summary, blocks: 5, cutting: 4, engagement_lost: 0 },
   limit_over: [],
 };
-const decision = { status: 'found', decided: {}, gamma_map: map } as unknown as Decision;
+const sample = sampleReport();
+const decision: Decision = { ...sample.plan!.decision!, gamma_map: map };
 const program: LoadedProgram = { id: 3, input: 'job.toml', document, decision };
 const answer: ProgramAnswer = {
   sequence: 1,
@@ -123,8 +124,8 @@ describe('programs', () => {
   it('are those of plans that are done, the newest first', () => {
     const jobs = [job(1), job(2, { state: 'running' }), job(3, { report: false }), job(4, { exit: 3 }), job(5, { verb: 'other' })];
     expect(candidates(jobs).map(({ id }) => id)).toEqual([4, 1]);
-    expect(programOf(job(3), { blocks: document, plan: { decision } } as unknown as Report)).toEqual(program);
-    expect(programOf(job(3), { blocks: null, plan: null } as unknown as Report)).toBeNull();
+    expect(programOf(job(3), { ...sample, blocks: document, plan: { ...sample.plan!, decision } })).toEqual(program);
+    expect(programOf(job(3), { ...sample, blocks: null, plan: null })).toBeNull();
     expect(jobName(program)).toBe('as chosen by the job');
     expect(jobName({ ...program, decision: null })).toBe('as programmed');
   });

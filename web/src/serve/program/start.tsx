@@ -1,20 +1,17 @@
 // How one gets a program to work on: a job of the folder is run.
 import { useState } from 'preact/hooks';
-import { useAction, useServe } from '../context';
+import { useServe } from '../context';
 import type { Job } from '../documents';
 import { Panel, Select } from '../pieces';
 import { href } from '../route';
 import { RunForm } from '../jobs/run_form';
-import { isOver, Outcome, Progress } from '../jobs/running';
+import { Course, isOver } from '../jobs/running';
 
 function Started({ job }: { job: Job }) {
-  const { api } = useServe();
-  const { error, act } = useAction();
-  if (!isOver(job)) return <Progress job={job} error={error} cancel={() => void act(() => api.cancel(job.id))} />;
   return (
     <>
-      <Outcome job={job} />
-      {job.report && (
+      <Course job={job} />
+      {isOver(job) && job.report && (
         <p>
           <a href={href('jobs', String(job.id))}>Its report</a>
         </p>
@@ -41,7 +38,7 @@ export function ProgramStart({ none, first = null }: { none: boolean; first?: st
           The folder has no job.toml. <code>robomill init job -o job.toml</code> writes one to fill in, with <code>--example</code> one that runs.
         </p>
       )}
-      {files.length > 1 && <Select label="Job" value={chosen} options={files.map((file) => ({ value: file, name: file }))} choose={setPath} />}
+      {files.length > 1 && <Select label="Job" value={chosen} options={files} choose={setPath} />}
       {files.length > 0 && (!job || isOver(job)) && <RunForm key={chosen} kind="job" path={chosen} dirty={false} save={() => Promise.resolve(true)} started={setStarted} />}
       {job && <Started key={job.id} job={job} />}
     </Panel>

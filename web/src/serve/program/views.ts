@@ -1,6 +1,5 @@
 // What the view of a program needs, made of jobs, columns and answers.
-import type { Decision } from '../../decision';
-import type { BlockColumns, BlocksDocument, Num, Report } from '../../documents';
+import type { BlockColumns, BlocksDocument, Decision, Num, Report } from '../../documents';
 import { isUnstable, numberAt } from '../../path_views';
 import { significant } from '../../text';
 import type { Job } from '../documents';

@@ -1,15 +1,14 @@
 // A program: its path, the map of γ with a line to drag, and its blocks, as the job has it or re-evaluated.
 import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
-import type { GammaMap } from '../../decision';
+import type { BlocksDocument, GammaMap } from '../../documents';
 import { nearest } from '../../decision_views';
-import type { BlocksDocument } from '../../documents';
 import { Bullets, Table } from '../../parts';
 import { blockFacts, quantitiesOf, worstBlocks } from '../../path_views';
 import { Choice } from '../../plot';
 import { PathFigure } from '../../sections/path';
 import { BlocksTable, worstText } from '../../sections/program';
 import { BlockLink, Selection, useSelection } from '../../selection';
-import { fixed, significant } from '../../text';
+import { capital, fixed, significant } from '../../text';
 import { useServe } from '../context';
 import { recordLatency } from '../latency';
 import { Button, ErrorBox, Panel } from '../pieces';
@@ -186,7 +185,7 @@ function Working({ program, map }: { program: LoadedProgram; map: GammaMap }) {
     <>
       <section aria-label="What is shown" class="standing" data-shown={isLine ? 'line' : 'job'} data-current={current && !busy}>
         <div class="controls">
-          <Choice legend="Shown" names={[name.charAt(0).toUpperCase() + name.slice(1), 'Re-evaluated with your γ']} chosen={shown === 'job' ? 0 : 1} choose={choose} />
+          <Choice legend="Shown" names={[capital(name), 'Re-evaluated with your γ']} chosen={shown === 'job' ? 0 : 1} choose={choose} />
         </div>
         <p role="status">{standingText({ shown, name, evaluation, current, busy })}</p>
         {outcomes}

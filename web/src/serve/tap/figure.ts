@@ -1,6 +1,6 @@
 // The FRF of the hits so far, over those of fewer hits.
 import { frfFigure } from '../../figures/frf';
-import type { Figure, Theme } from '../../figures/theme';
+import { lines, type Figure, type Theme } from '../../figures/theme';
 import type { Frf } from '../../views';
 
 /** An average of fewer hits. */
@@ -15,7 +15,7 @@ export function tapFigure(frf: Frf, earlier: Earlier[], logarithmic: boolean, th
     const curve = frfs.find(({ name }) => name === frf.name)?.measured;
     if (!curve) return [];
     const name = `${hits} ${hits === 1 ? 'hit' : 'hits'}`;
-    return [{ type: 'scatter', mode: 'lines', name, x: curve.frequency_hz, y: curve.magnitude, yaxis: 'y', line: { color: theme.unknown, width: 0.8 }, hoverinfo: 'skip' }];
+    return [lines(name, curve.frequency_hz, curve.magnitude, { color: theme.unknown, width: 0.8 }, null, { yaxis: 'y' })];
   });
   const now = data.map((trace) => (trace['name'] === 'measured' ? { ...trace, line: { color: theme.accent, width: 2 } } : trace));
   return { data: [...before, ...now], layout: { ...layout, uirevision: frf.name } };

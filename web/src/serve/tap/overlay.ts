@@ -1,6 +1,6 @@
 // Single hits over each other: in time, and their own frequency responses.
 import type { Num } from '../../documents';
-import { axis, layout, thinSpace, type Figure, type Theme, type Trace } from '../../figures/theme';
+import { axis, layout, lines, thinSpace, type Figure, type Layout, type Theme, type Trace } from '../../figures/theme';
 import type { TapCurve, TapHitCurves } from '../documents';
 
 /** A hit among the others. */
@@ -28,35 +28,32 @@ interface Line {
 }
 
 /** Several lines as one trace: hundreds of hits stay three traces. */
-function joined(lines: Line[]): Trace {
+function joined(name: string, hits: Line[], style: Layout, hover: string): Trace {
   const x: Num[] = [];
   const y: Num[] = [];
   const customdata: number[] = [];
-  for (const line of lines) {
+  for (const line of hits) {
     x.push(...line.x, null);
     y.push(...line.y, null);
     customdata.push(...line.x.map(() => line.number), line.number);
   }
-  return { type: 'scatter', mode: 'lines', x, y, customdata };
+  return lines(name, x, y, style, `hit %{customdata}: ${hover}`, { customdata });
 }
 
 /** Used hits, those that are not, and the newest over them. */
 function traces(all: Overlaid[], lineOf: (hit: TapHitCurves) => Omit<Line, 'number'> | null, hover: string, theme: Theme): Trace[] {
-  const lines = all.flatMap((one) => {
+  const hits = all.flatMap((one) => {
     const line = lineOf(one.hit);
     return line ? [{ ...one, line: { number: one.hit.number, ...line } }] : [];
   });
-  const of = (which: (one: (typeof lines)[number]) => boolean) => lines.filter(which).map(({ line }) => line);
-  const parts: [string, Line[], object][] = [
+  const of = (which: (one: (typeof hits)[number]) => boolean) => hits.filter(which).map(({ line }) => line);
+  const parts: [string, Line[], Layout][] = [
     ['used', of(({ used, newest }) => used && !newest), { color: theme.measured, width: 1.2 }],
     ['not used', of(({ used, newest }) => !used && !newest), { color: theme.chatter, width: 1.2, dash: '5px,4px' }],
-    ['newest', of(({ newest }) => newest), { color: theme.accent, width: 2.6, ...(lines.some(({ newest, used }) => newest && !used) ? { dash: '5px,4px' } : {}) }],
+    ['newest', of(({ newest }) => newest), { color: theme.accent, width: 2.6, ...(hits.some(({ newest, used }) => newest && !used) ? { dash: '5px,4px' } : {}) }],
   ];
-  const filled = parts.filter(([, some]) => some.length > 0);
-  return filled.map(([name, some, line]) => ({ ...joined(some), name, line, hovertemplate: `hit %{customdata}: ${hover}<extra></extra>` }));
+  return parts.flatMap(([name, some, style]) => (some.length > 0 ? [joined(name, some, style, hover)] : []));
 }
-
-const legend = { orientation: 'h', yanchor: 'bottom', y: 1.01, xanchor: 'left', x: 0, font: { size: 12 } };
 
 /** From three widths of the newest pulse before its peak to eight behind it [ms]; null: nothing is known. */
 export function pulseRange(force: TapCurve | undefined): [number, number] | null {
@@ -81,7 +78,6 @@ export function timeFigure(all: Overlaid[], which: string, pulse: boolean, theme
   return {
     data: traces(all, lineOf, `%{y:.4g}${unit} at %{x:.3f}${thinSpace}ms`, theme),
     layout: layout(theme, 340, {
-      legend,
       margin: { l: 64, r: 24, t: 32, b: 48 },
       xaxis: axis(theme, 'Time from the peak of the force (ms)', range ? { range } : {}),
       yaxis: axis(theme, which === 'force' ? 'Force (N)' : `Response in ${which} (as recorded)`),
@@ -98,7 +94,6 @@ export function hitFrfFigure(all: Overlaid[], name: string, logarithmic: boolean
   return {
     data: traces(all, lineOf, `%{y:.4g}${thinSpace}µm/N at %{x:.2f}${thinSpace}Hz`, theme),
     layout: layout(theme, 340, {
-      legend,
       margin: { l: 64, r: 24, t: 32, b: 48 },
       xaxis: axis(theme, 'Frequency (Hz)', logarithmic ? { type: 'log' } : {}),
       yaxis: axis(theme, `|${name}| (µm/N)`, { type: 'log', exponentformat: 'power', dtick: 1 }),

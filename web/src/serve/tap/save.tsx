@@ -2,7 +2,7 @@
 import { useState } from 'preact/hooks';
 import { useAction, useServe } from '../context';
 import type { Tap } from '../documents';
-import { Button, ErrorBox, Labelled, Panel } from '../pieces';
+import { Button, ButtonForm, ErrorBox, Panel, TextBox } from '../pieces';
 
 /** Beside the settings. */
 export function besideSettings(hits: string, name: string): string {
@@ -44,16 +44,8 @@ export function SavePanel({ tap, wrote }: { tap: Tap; wrote: (accepted: string) 
   };
   return (
     <Panel heading="Save" name="tap-save">
-      <form
-        class="buttons"
-        onSubmit={(event) => {
-          event.preventDefault();
-          save(false);
-        }}
-      >
-        <Labelled label="File" help=".uff, .csv, .mat, .json: the frequency responses; .toml: the hits themselves, for robomill frf">
-          <input type="text" value={path} required spellcheck={false} autocomplete="off" onInput={({ currentTarget }) => write(currentTarget.value)} />
-        </Labelled>
+      <ButtonForm send={() => save(false)}>
+        <TextBox label="File" help=".uff, .csv, .mat, .json: the frequency responses; .toml: the hits themselves, for robomill frf" value={path} required type={write} />
         <button type="submit" disabled={busy || tap.good === 0}>
           Save
         </button>
@@ -62,7 +54,7 @@ export function SavePanel({ tap, wrote }: { tap: Tap; wrote: (accepted: string) 
             Replace
           </Button>
         )}
-      </form>
+      </ButtonForm>
       <ErrorBox error={error} />
       {saved.length > 0 && <p class="good">Saved {saved.join(', ')}.</p>}
     </Panel>

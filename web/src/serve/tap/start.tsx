@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 import { Bullets } from '../../parts';
 import { useAction, useServe } from '../context';
 import type { TapRequest } from '../documents';
-import { ErrorBox, Labelled, Panel, Select } from '../pieces';
+import { ButtonForm, ErrorBox, Labelled, Panel, Select, TextBox } from '../pieces';
 import { directions } from './stream';
 
 const sources = [
@@ -52,25 +52,15 @@ export function Start({ path }: { path: string }) {
   if (files.length === 0) return <p class="notice">A tap test needs a hits.toml with the columns and sensors of your recordings. Drop one of them on the page: robomill asks and writes it.</p>;
   return (
     <Panel heading="Begin" name="tap-start">
-      <form
-        class="buttons"
-        onSubmit={(event) => {
-          event.preventDefault();
-          void act(start);
-        }}
-      >
-        <Select label="Settings" value={hits} options={files.map((file) => ({ value: file.path, name: file.path }))} choose={set('hits')} />
+      <ButtonForm send={() => void act(start)}>
+        <Select label="Settings" value={hits} options={files.map((file) => file.path)} choose={set('hits')} />
         <Select label="Hits from" value={form.source} options={sources} choose={set('source')} />
         {form.source === 'files' ? (
-          <Labelled label="Folder to watch (empty: that of the settings)">
-            <input type="text" spellcheck={false} autocomplete="off" {...typed('watch')} />
-          </Labelled>
+          <TextBox label="Folder to watch (empty: that of the settings)" value={form.watch} type={set('watch')} />
         ) : (
           <>
-            <Labelled label="Address">
-              <input type="text" required placeholder="mqtt://HOST/TOPIC" spellcheck={false} autocomplete="off" {...typed('stream')} />
-            </Labelled>
-            <Select label="Direction of the hits" value={form.direction} options={[{ value: '', name: 'that of the settings' }, ...directions.map((name) => ({ value: name, name }))]} choose={set('direction')} />
+            <TextBox label="Address" required placeholder="mqtt://HOST/TOPIC" value={form.stream} type={set('stream')} />
+            <Select label="Direction of the hits" value={form.direction} options={[{ value: '', name: 'that of the settings' }, ...directions]} choose={set('direction')} />
             <Labelled label="Trigger level in N (empty: from the noise)">
               <input type="number" min={0} step="any" {...typed('level')} />
             </Labelled>
@@ -82,7 +72,7 @@ export function Start({ path }: { path: string }) {
         <button type="submit" class="main" disabled={busy || hits === ''}>
           Start
         </button>
-      </form>
+      </ButtonForm>
       <Bullets texts={[...(remarks[form.source] ?? []), always]} />
       <ErrorBox error={error} />
     </Panel>

@@ -3,7 +3,7 @@ import { Bullets } from '../../parts';
 import { significant } from '../../text';
 import { useAction, useServe } from '../context';
 import type { Tap, TapStream } from '../documents';
-import { ErrorBox, FaultText, Panel, Select } from '../pieces';
+import { ErrorBox, FaultLine, Panel, Select } from '../pieces';
 
 export const directions = ['x', '-x', 'y', '-y', 'z', '-z'];
 
@@ -35,13 +35,9 @@ export function StreamPanel({ tap, stream }: { tap: Tap; stream: TapStream }) {
       <p role="status" aria-live="polite" class={stream.status === 'receiving' ? 'good' : 'notice'}>
         {streamText(stream)}
       </p>
-      {stream.error && (
-        <p class="error">
-          <FaultText fault={stream.error} />
-        </p>
-      )}
+      {stream.error && <FaultLine fault={stream.error} />}
       <div class="buttons" aria-busy={busy}>
-        <Select label="Direction of the hits that come" value={now} options={[...new Set([now, ...directions])].map((name) => ({ value: name, name }))} choose={turn} />
+        <Select label="Direction of the hits that come" value={now} options={[...new Set([now, ...directions])]} choose={turn} />
       </div>
       <ErrorBox error={error} />
       <Bullets texts={remarks(stream)} />

@@ -4,7 +4,7 @@ import type { FrfDocument } from '../../documents';
 import { prefersLogFrequency } from '../../figures/frf';
 import type { Theme } from '../../figures/theme';
 import { Table } from '../../parts';
-import { Choice, Plot } from '../../plot';
+import { Choice, LogChoice, Plot } from '../../plot';
 import { fixed, significant } from '../../text';
 import { frfsOf, type Frf } from '../../views';
 import { Confirm, useAsked } from '../confirm';
@@ -81,7 +81,7 @@ function TapPlot({ tap }: { tap: Tap }) {
       draw={draw}
     >
       <Choice legend="FRF" names={frfs.map(({ name }) => name)} chosen={Math.min(shown, frfs.length - 1)} choose={setShown} />
-      <Choice legend="Frequency" names={['linear', 'logarithmic']} chosen={Number(log)} choose={(chosen) => setLogarithmic(chosen === 1)} />
+      <LogChoice legend="Frequency" logarithmic={log} choose={setLogarithmic} />
     </Plot>
   );
 }
@@ -108,17 +108,15 @@ export function TapShown({ tap, wrote }: { tap: Tap; wrote: (accepted: string) =
         {!tap.running && <p class="notice">The tap test is over.</p>}
       </Panel>
       {tap.stream && <StreamPanel tap={tap} stream={tap.stream} />}
-      <section aria-label="Frequency response">
-        <h2>Frequency response</h2>
+      <Panel heading="Frequency response">
         <TapPlot tap={tap} />
         {tap.peaks.length > 0 && <PeaksTable peaks={tap.peaks} />}
-      </section>
+      </Panel>
       {tap.taken.length > 0 && (
-        <section aria-label="Hits">
-          <h2>Hits</h2>
+        <Panel heading="Hits">
           <Overlay tap={tap} />
           <Hits tap={tap} />
-        </section>
+        </Panel>
       )}
       {tap.taken.length > 0 && <SavePanel key={tap.id} tap={tap} wrote={wrote} />}
     </>
