@@ -62,14 +62,16 @@ function limitUse(what: string, most: Num, allowed: Num, nearest: NearestToLimit
   return { what, unit, max, limit, share: shareOf(max, limit), ...nearest };
 }
 
+const rates = [
+  { rate: 'velocity', per: '/s' },
+  { rate: 'acceleration', per: '/s²' },
+  { rate: 'jerk', per: '/s³' },
+] as const;
+
 function jointUses(joint: SmoothedJoint, index: number): LimitUse[] {
   const [unit, factor] = jointUnit(joint);
   const name = `joint ${index + 1}`;
-  const uses = [
-    limitUse(`${name}, velocity`, joint.max_velocity, joint.limit_velocity, joint.velocity, `${unit}/s`, factor),
-    limitUse(`${name}, acceleration`, joint.max_acceleration, joint.limit_acceleration, joint.acceleration, `${unit}/s²`, factor),
-    limitUse(`${name}, jerk`, joint.max_jerk, joint.limit_jerk, joint.jerk, `${unit}/s³`, factor),
-  ];
+  const uses = rates.map(({ rate, per }) => limitUse(`${name}, ${rate}`, joint[`max_${rate}`], joint[`limit_${rate}`], joint[rate], `${unit}${per}`, factor));
   if (joint.position.violations === 0) return uses;
   return [{ what: `${name}, beyond its range`, unit, max: scaled(joint.beyond_position, factor), limit: null, share: null, ...joint.position }, ...uses];
 }
@@ -104,11 +106,7 @@ function largest(values: Num[]): Num {
 /** The most of a joint's velocity, acceleration or jerk limit that is used. */
 export function jointShare({ joints }: SmoothedBy): Num {
   return largest(
-    joints.flatMap((joint) => [
-      shareOf(joint.max_velocity, joint.limit_velocity),
-      shareOf(joint.max_acceleration, joint.limit_acceleration),
-      shareOf(joint.max_jerk, joint.limit_jerk),
-    ]),
+    joints.flatMap((joint) => rates.map(({ rate }) => shareOf(joint[`max_${rate}`], joint[`limit_${rate}`]))),
   );
 }
 

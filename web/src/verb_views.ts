@@ -4,13 +4,13 @@ import { keys } from '#schema/sweep';
 import type { ChartPoint, CoefficientsDocument, ExplainedPeak, ExplanationDocument, JointDocument, Num, Reading, Slot, SweepDocument } from './documents';
 import { capital, fixed, modeName, significant } from './text';
 
-const sweptKeys = { radial_depth: 'radial_depth_mm', lead: 'lead_deg', tilt: 'tilt_deg' } as const;
-const sweptNames = { radial_depth: 'Radial depth', lead: 'Lead', tilt: 'Tilt' };
+type SweptKey = Extract<keyof SweepDocument, `${SweepDocument['sweep']}_${string}`>;
 
-/** What a sweep varies beside the speed. */
+/** What a sweep varies beside the speed: the key of the document that is its name and a unit. */
 export function sweptOf(sweep: SweepDocument) {
-  const key = sweptKeys[sweep.sweep];
-  return { key, name: sweptNames[sweep.sweep], unit: keys[key].unit, values: sweep[key] ?? [], valueOf: (point: ChartPoint): Num => point[key] ?? null };
+  const isKey = (key: string): key is SweptKey => key.startsWith(`${sweep.sweep}_`);
+  const key = Object.keys(keys).find(isKey)!;
+  return { key, name: capital(sweep.sweep.replace('_', ' ')), unit: keys[key].unit, values: sweep[key] ?? [], valueOf: (point: ChartPoint): Num => point[key] ?? null };
 }
 
 /** "0.5 to 1.2, 2 to 3"; empty: at no value. */

@@ -1,19 +1,8 @@
 // What tables and plots need, made of the documents.
-import type { AssemblyDocument, Forces, FrfDocument, LimitRow, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
+import type { AssemblyDocument, Forces, FrfDocument, LimitRow, LobesDocument, ModesDocument, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
 
-export interface Mode {
-  mode: number;
-  mode_of: Owner;
-  frequency_hz: number;
-  damping_ratio: number;
-  std: { frequency_hz: Num; damping_ratio: Num };
-  left: ModeVector;
-  right: ModeVector;
-  modal_stiffness_n_per_um?: Num;
-  modal_mass_kg?: Num;
-  weak?: boolean;
-  limit_share: Num; // of the speeds whose limit it sets
-}
+/** `limit_share`: of the speeds whose limit it sets. */
+export type Mode = ModesDocument['modes'][number] & { mode: number; mode_of: Owner; limit_share: Num };
 
 /** The tool's modes, then the workpiece's. */
 export function modesOf({ modes, workpiece_modes: workpiece, plan }: Pick<Report, 'modes' | 'workpiece_modes' | 'plan'>): Mode[] {

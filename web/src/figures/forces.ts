@@ -1,7 +1,7 @@
 import type { Block, Num, Program, Revolution, Ring, SpindleRotation } from '../documents';
 import { valueAt } from '../views';
-import { highest, limitMarks, reach, suffix } from './rows';
-import { axis, layout, lines, points, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { highest, limitMarks, reach, stack, suffix } from './rows';
+import { axis, layout, lines, points, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const turnAxis = 'Rotation φ from +y (°)';
 
@@ -137,31 +137,23 @@ export function programFigure(program: Program, theme: Theme): Figure {
   const x = [0, ...blocks.map((block) => block.path_mm)];
   const places = blocks.map(({ block, line }) => [block, line]);
   const first = places[0] ?? [null, null];
-  const data: Trace[] = [];
-  const shapes: Layout[] = [];
-  const annotations: Layout[] = [];
-  const axes: Layout = {};
-  rows.forEach((row, index) => {
-    const most = Math.max(...row.lines.map((line) => highest(line.y))) || 1; // nothing cut: any range will do
-    const inside = row.limit !== null && row.limit <= reach * most;
-    for (const line of row.lines) {
-      const style = { shape: 'vh', width: line.faint ? 1 : 1.5, color: line.faint ? theme.measured : theme.accent };
-      const hover = `%{y:.4g}${thinSpace}${row.unit} in block %{customdata[0]}, line %{customdata[1]}<extra>${line.name}</extra>`;
-      data.push(lines(line.name, x, [line.y[0] ?? null, ...line.y], style, hover, { showlegend: row.lines.length > 1, yaxis: `y${suffix(index)}`, customdata: [first, ...places] }));
-    }
-    if (row.limit !== null) {
+  const { data, axes, shapes, annotations } = stack(
+    rows.map((row, index) => {
+      const most = Math.max(...row.lines.map((line) => highest(line.y))) || 1; // nothing cut: any range will do
+      const inside = row.limit !== null && row.limit <= reach * most;
+      const traces = row.lines.map(({ name, y, faint }) => {
+        const style = { shape: 'vh', width: faint ? 1 : 1.5, color: faint ? theme.measured : theme.accent };
+        const hover = `%{y:.4g}${thinSpace}${row.unit} in block %{customdata[0]}, line %{customdata[1]}<extra>${name}</extra>`;
+        return lines(name, x, [y[0] ?? null, ...y], style, hover, { showlegend: row.lines.length > 1, yaxis: `y${suffix(index)}`, customdata: [first, ...places] });
+      });
+      const own = { title: row.title, traces, axis: { range: [0, 1.12 * Math.max(most, inside ? row.limit! * 1.06 : 0)], nticks: 4, exponentformat: 'none' } };
+      if (row.limit === null) return own;
       const text = `spindle's limit ${Number(row.limit.toPrecision(3))} ${row.unit}${inside ? '' : ', above this plot'}`;
-      const mark = limitMarks(index, inside ? [row.limit] : [], text, theme);
-      shapes.push(...mark.shapes);
-      annotations.push(mark.annotation);
-    }
-    axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
-      domain: stacked(index, rows.length, 0.045),
-      range: [0, 1.12 * Math.max(most, inside ? row.limit! * 1.06 : 0)],
-      nticks: 4,
-      exponentformat: 'none',
-    });
-  });
+      return { ...own, marks: limitMarks(index, inside ? [row.limit] : [], text, theme) };
+    }),
+    0.045,
+    theme,
+  );
   return {
     data,
     layout: layout(theme, 150 * rows.length + 80, {

@@ -1,9 +1,9 @@
 import type { Calibration, Monitor, MonitorState, Num, RocPoint } from '../documents';
 import { bandCurves } from '../bands';
 import { chatterMarks, multiplesOver, shadedStays, speedStretches, type SpeedStretch } from '../monitor_views';
-import { curve, suffix } from './rows';
+import { curve, stack, suffix, type Stacked } from './rows';
 import { scaled } from '../text';
-import { axis, barBelow, layout, lines, plain, points, seriesColour, shadedBetween, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, barBelow, layout, lines, plain, points, seriesColour, shadedBetween, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const shades: { state: MonitorState; name: string; colour: (theme: Theme) => string; opacity: number }[] = [
   { state: 'chatter', name: 'chatter', colour: (theme) => theme.chatter, opacity: 0.2 },
@@ -112,13 +112,6 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
   };
 }
 
-interface Row {
-  title: string;
-  unit: string;
-  traces: (index: number) => Trace[];
-  axis: Layout;
-}
-
 /** About the curve, a hundredth of it at least: a speed that hardly moves is no zigzag. */
 function speedRange(stretches: SpeedStretch[]): [number, number] {
   const low = Math.min(...stretches.flatMap(({ low_rpm }) => low_rpm));
@@ -128,15 +121,14 @@ function speedRange(stretches: SpeedStretch[]): [number, number] {
 }
 
 /** The tracked speed between one standard deviation less and more; a gap where it is unknown. */
-function speedRow(stretches: SpeedStretch[], theme: Theme): Row {
+function speedRow(stretches: SpeedStretch[], index: number, theme: Theme): Stacked {
   const gapped = <T>(of: (stretch: SpeedStretch) => T[]) => stretches.flatMap((stretch) => [...of(stretch), null]);
   const there = gapped(({ time_s }) => time_s);
   const doubtful = stretches.some(({ low_rpm, speed_rpm }) => low_rpm.some((low, i) => low < speed_rpm[i]!));
   return {
-    title: 'Speed',
-    unit: 'rpm',
-    axis: { range: speedRange(stretches), exponentformat: 'none' },
-    traces: (index) => [
+    title: 'Speed (rpm)',
+    axis: { range: speedRange(stretches), nticks: 5, exponentformat: 'none' },
+    traces: [
       ...(doubtful
         ? [
             curve(
@@ -159,30 +151,18 @@ function speedRow(stretches: SpeedStretch[], theme: Theme): Row {
 export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   const { run_s, score, threshold, energy_entropy } = monitor.decisions;
   const { time_s: time, values } = bandCurves([score, threshold, energy_entropy], run_s);
-  const fromZero = { rangemode: 'tozero', exponentformat: 'SI' };
+  const fromZero = { rangemode: 'tozero', nticks: 5, exponentformat: 'SI' };
   const line = (index: number, label: string, y: Num[], style: Layout): Trace => curve(index, label, '', time, y, style, { showlegend: index === 0 });
-  const rows: Row[] = [
-    {
-      title: 'Score',
-      unit: '',
-      axis: fromZero,
-      traces: (index) => [
-        line(index, 'score', values[0]!, { color: theme.accent, width: 1.4 }),
-        line(index, 'threshold', values[1]!, { color: theme.chatter, width: 1.4, dash: '6px,4px' }),
-      ],
-    },
-    { title: 'Entropy', unit: '', axis: fromZero, traces: (index) => [line(index, 'entropy', values[2]!, { color: theme.accent, width: 1.4 })] },
-  ];
+  const own = { color: theme.accent, width: 1.4 };
   const stretches = speedStretches(monitor);
-  if (stretches.length > 0) rows.push(speedRow(stretches, theme));
-  const axes: Layout = {};
-  rows.forEach((row, index) => {
-    const [low, top] = stacked(index, rows.length, 0.05);
-    const domain = [index === rows.length - 1 ? 0 : low, top];
-    axes[`yaxis${suffix(index)}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, { domain, nticks: 5, ...row.axis });
-  });
+  const rows: Stacked[] = [
+    { title: 'Score', axis: fromZero, traces: [line(0, 'score', values[0]!, own), line(0, 'threshold', values[1]!, { color: theme.chatter, width: 1.4, dash: '6px,4px' })] },
+    { title: 'Entropy', axis: fromZero, traces: [line(1, 'entropy', values[2]!, own)] },
+    ...(stretches.length > 0 ? [speedRow(stretches, 2, theme)] : []),
+  ];
+  const { data, axes } = stack(rows, 0.05, theme);
   return {
-    data: rows.flatMap((row, index) => row.traces(index)),
+    data,
     layout: layout(theme, 150 * rows.length + 110, {
       hovermode: 'x',
       margin: { l: 72, r: 36, t: 40, b: 48 },

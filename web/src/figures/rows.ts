@@ -52,37 +52,47 @@ export function magnitude(values: Num[]): number {
   return values.reduce<number>((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 }
 
+/** A plot among others above each other. */
+export interface Stacked {
+  title: string;
+  traces: Trace[]; // of the curves: curve()
+  axis: Layout;
+  marks?: ReturnType<typeof limitMarks>;
+}
+
+/** All of them; `gap` is between two, as a share of the whole height. */
+export function stack(rows: Stacked[], gap: number, theme: Theme): { data: Trace[]; axes: Layout; shapes: Layout[]; annotations: Layout[] } {
+  const axes = rows.map(({ title, axis: own }, i) => [`yaxis${suffix(i)}`, axis(theme, title, { domain: stacked(i, rows.length, gap), ...own })]);
+  return {
+    data: rows.flatMap(({ traces }) => traces),
+    axes: Object.fromEntries(axes),
+    shapes: rows.flatMap(({ marks }) => marks?.shapes ?? []),
+    annotations: rows.flatMap(({ marks }) => (marks ? [marks.annotation] : [])),
+  };
+}
+
 /** Rows of curves over time, one above the other, each with its limit. */
 export function overTime(rows: Row[], duration: number, legend: boolean, theme: Theme): Figure {
-  const data: Trace[] = [];
-  const shapes: Layout[] = [];
-  const annotations: Layout[] = [];
-  const axes: Layout = {};
   const named = new Set<string>();
-  rows.forEach((row, index) => {
-    const most = Math.max(...row.lines.map((line) => magnitude(line.values)), 0);
-    const inside = row.limit !== null && (most === 0 || row.limit <= reach * most);
-    for (const line of row.lines) {
-      const style = { color: line.color, width: 1.4, dash: line.dash };
-      data.push(curve(index, line.name, row.unit, line.time_s, line.values, style, { legendgroup: line.name, showlegend: legend && !named.has(line.name) }));
-      named.add(line.name);
-    }
-    if (row.limit !== null) {
+  const { data, axes, shapes, annotations } = stack(
+    rows.map((row, index) => {
+      const most = Math.max(...row.lines.map((line) => magnitude(line.values)), 0);
+      const inside = row.limit !== null && (most === 0 || row.limit <= reach * most);
+      const high = 1.1 * Math.max(most, inside ? row.limit! : 0) || 1;
+      const traces = row.lines.map(({ name, time_s, values, color, dash }) => {
+        const showlegend = legend && !named.has(name);
+        named.add(name);
+        return curve(index, name, row.unit, time_s, values, { color, width: 1.4, dash }, { legendgroup: name, showlegend });
+      });
+      const own = { title: row.title, traces, axis: { range: [row.both ? -high : 0, high], nticks: 5, zeroline: row.both, exponentformat: 'none' } };
+      if (row.limit === null) return own;
       const text = `limit ${Number(row.limit.toPrecision(4))} ${row.unit}${inside ? '' : ', beyond this plot'}`;
       const heights = row.both ? [row.limit, -row.limit] : [row.limit];
-      const marks = limitMarks(index, inside ? heights : [], text, theme);
-      shapes.push(...marks.shapes);
-      annotations.push(marks.annotation);
-    }
-    const high = 1.1 * Math.max(most, inside ? row.limit! : 0) || 1;
-    axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
-      domain: stacked(index, rows.length, 0.05),
-      range: [row.both ? -high : 0, high],
-      nticks: 5,
-      zeroline: row.both,
-      exponentformat: 'none',
-    });
-  });
+      return { ...own, marks: limitMarks(index, inside ? heights : [], text, theme) };
+    }),
+    0.05,
+    theme,
+  );
   return {
     data,
     layout: layout(theme, 165 * rows.length + 80, {

@@ -1,6 +1,6 @@
 import type { Num, ToolRow } from '../documents';
-import { suffix } from './rows';
-import { axis, layout, plain, stacked, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { stack, suffix } from './rows';
+import { axis, layout, plain, thinSpace, type Figure, type Theme } from './theme';
 
 interface Bars {
   title: string;
@@ -24,20 +24,15 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
   ];
   const rows = all.filter(({ values }) => values.some((value) => value !== null));
   const places = tools.map((_, i) => i + 1);
-  const axes: Layout = {};
-  const data: Trace[] = rows.map(({ title, unit, values }, index) => {
-    axes[`yaxis${suffix(index)}`] = axis(theme, title, { domain: stacked(index, rows.length, 0.05), rangemode: 'tozero', nticks: 5, exponentformat: 'none' });
-    return {
-      type: 'bar',
-      name: title,
-      x: places,
-      customdata: tools.map(({ tool }) => plain(tool)),
-      y: values,
-      yaxis: `y${suffix(index)}`,
-      marker: { color: theme.accent },
-      hovertemplate: `%{customdata}: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
-    };
-  });
+  const { data, axes } = stack(
+    rows.map(({ title, unit, values }, index) => {
+      const bars = { type: 'bar', name: title, x: places, y: values, yaxis: `y${suffix(index)}`, marker: { color: theme.accent } };
+      const named = { customdata: tools.map(({ tool }) => plain(tool)), hovertemplate: `%{customdata}: %{y:.4g}${thinSpace}${unit}<extra></extra>` };
+      return { title, traces: [{ ...bars, ...named }], axis: { rangemode: 'tozero', nticks: 5, exponentformat: 'none' } };
+    }),
+    0.05,
+    theme,
+  );
   return {
     data,
     layout: layout(theme, 170 * rows.length + 90, {

@@ -1,7 +1,7 @@
 // Lobes that answer while a slider moves.
 import { useEffect, useState } from 'preact/hooks';
-import type { SweepDocument } from '../../documents';
-import { Bullets } from '../../parts';
+import type { Fact, SweepDocument } from '../../documents';
+import { Bullets, Facts } from '../../parts';
 import { fixed, percent, significant } from '../../text';
 import { sweptOf } from '../../verb_views';
 import { useServe } from '../context';
@@ -31,20 +31,13 @@ export function pointText({ stable, margin }: PointFacts): string {
   return `${stable ? 'stable' : 'chatter'}${margin === null ? '' : `, margin ${percent(margin, 0)}`}`;
 }
 
-function FactsPanel({ stable, evaluated, entries }: { stable: boolean; evaluated: boolean; entries: [string, string][] }) {
+function FactsPanel({ stable, evaluated, facts }: { stable: boolean; evaluated: boolean; facts: Fact[] }) {
   return (
     <div class="point-facts" data-evaluated={evaluated}>
       <span role="status" class={`verdict ${stable ? 'stable' : 'chatter'}`}>
         {stable ? 'stable' : 'chatter'}
       </span>
-      <dl class="facts">
-        {entries.map(([label, value]) => (
-          <div>
-            <dt>{label}</dt>
-            <dd>{value}</dd>
-          </div>
-        ))}
-      </dl>
+      <Facts facts={facts} />
     </div>
   );
 }
@@ -55,27 +48,27 @@ function frequencyText({ frequency_hz, mode }: Pick<PointFacts, 'frequency_hz' |
 
 export function PointPanel({ point: [speed, depth], facts }: { point: Point; facts: PointFacts }) {
   const { stable, limit_mm, searched_mm, margin } = facts;
-  const entries: [string, string][] = [
-    ['Spindle speed', `${fixed(speed, 0)} rpm`],
-    ['Axial depth', `${significant(depth)} mm`],
-    ['Limit here', limit_mm === null ? `none up to ${significant(searched_mm)} mm` : `${fixed(limit_mm, 3)} mm`],
-    ['Margin', margin === null ? '–' : percent(margin, 0)],
-    [stable ? 'Chatter frequency above the limit' : 'Chatter frequency', frequencyText(facts)],
+  const entries = [
+    { label: 'Spindle speed', value: `${fixed(speed, 0)} rpm` },
+    { label: 'Axial depth', value: `${significant(depth)} mm` },
+    { label: 'Limit here', value: limit_mm === null ? `none up to ${significant(searched_mm)} mm` : `${fixed(limit_mm, 3)} mm` },
+    { label: 'Margin', value: percent(margin, 0) },
+    { label: stable ? 'Chatter frequency above the limit' : 'Chatter frequency', value: frequencyText(facts) },
   ];
-  return <FactsPanel stable={stable} evaluated={facts.evaluated} entries={entries} />;
+  return <FactsPanel stable={stable} evaluated={facts.evaluated} facts={entries} />;
 }
 
 /** The same in a sweep. */
 export function SweptPanel({ point: [speed, value], facts, sweep }: { point: Point; facts: SweptFacts; sweep: SweepDocument }) {
   const { name, unit } = sweptOf(sweep);
-  const entries: [string, string][] = [
-    ['Spindle speed', `${fixed(speed, 0)} rpm`],
-    [name, `${significant(value)} ${unit}`],
-    ['Spectral radius', facts.spectral_radius === null ? '–' : fixed(facts.spectral_radius, 3)],
-    ['Stable here from', facts.intervals === '' ? 'nowhere' : `${facts.intervals} ${unit}`],
-    ['Chatter frequency', frequencyText(facts)],
+  const entries = [
+    { label: 'Spindle speed', value: `${fixed(speed, 0)} rpm` },
+    { label: name, value: `${significant(value)} ${unit}` },
+    { label: 'Spectral radius', value: fixed(facts.spectral_radius, 3) },
+    { label: 'Stable here from', value: facts.intervals === '' ? 'nowhere' : `${facts.intervals} ${unit}` },
+    { label: 'Chatter frequency', value: frequencyText(facts) },
   ];
-  return <FactsPanel stable={facts.stable} evaluated={facts.evaluated} entries={entries} />;
+  return <FactsPanel stable={facts.stable} evaluated={facts.evaluated} facts={entries} />;
 }
 
 interface ControlsProps {
