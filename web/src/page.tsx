@@ -1,7 +1,7 @@
 // The page: what to cut first, then what it rests on.
 import { Component, type ComponentChildren } from 'preact';
 import type { Assumption, Report } from './documents';
-import { Bullets, Facts } from './parts';
+import { Facts, WarningBox } from './parts';
 import { AssemblySection } from './sections/assembly';
 import { AssumedBox } from './sections/assumed';
 import { CellSection } from './sections/cell';
@@ -87,16 +87,6 @@ function Header({ title, created, plan, within }: Report & { within: boolean }) 
   );
 }
 
-function Warnings({ warnings }: { warnings: string[] }) {
-  if (warnings.length === 0) return null;
-  return (
-    <aside class="warnings" aria-label="Warnings">
-      <h2>Before you use these numbers</h2>
-      <Bullets texts={warnings} />
-    </aside>
-  );
-}
-
 /** What the page does not say elsewhere: a decision has its own word on collisions. */
 function assumedBeside({ assumed, cell, plan }: Report): Assumption[] {
   const all = [...assumed, ...(cell?.assumed ?? [])];
@@ -137,7 +127,7 @@ export function Page({ report, within = false }: { report: Report; within?: bool
           </Contained>
         )}
         {plan && <RecommendationSection plan={plan} hasLobes={report.lobes !== null} />}
-        <Warnings warnings={[...(decision ? [] : (plan?.warnings ?? [])), ...report.warnings]} />
+        <WarningBox level="h2" heading="Before you use these numbers" texts={[...(decision ? [] : (plan?.warnings ?? [])), ...report.warnings]} />
         <AssumedBox assumed={assumedBeside(report)} />
         {shown.map(({ content }) => (
           <Contained>{content}</Contained>

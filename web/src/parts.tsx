@@ -44,7 +44,9 @@ function cellClass<Row>({ number, long }: Column<Row>, content: ComponentChildre
   return long || (typeof content === 'string' && content.length > 24) ? 'long' : undefined;
 }
 
+/** Nothing where there are no rows. */
 export function Table<Row>({ caption, quiet, columns: all, rows, rowClass, rowKey }: TableProps<Row>) {
+  if (rows.length === 0) return null;
   const columns = all.filter(({ optional, cell }) => !optional || rows.some((row, index) => !['', dash].includes(cell(row, index) as string)));
   return (
     <div class="table" tabIndex={0} role="region" aria-label={caption}>
@@ -84,10 +86,11 @@ export function Details({ summary, children }: { summary: string; children: Comp
   );
 }
 
-/** A table that opens on a click; its caption is what is clicked. */
-export function DetailsTable<Row>({ summary, ...table }: TableProps<Row> & { summary?: string }) {
+/** A table that opens on a click. */
+export function DetailsTable<Row>({ summary, ...table }: TableProps<Row> & { summary: string }) {
+  if (table.rows.length === 0) return null;
   return (
-    <Details summary={summary ?? table.caption}>
+    <Details summary={summary}>
       <Table quiet {...table} />
     </Details>
   );
@@ -184,11 +187,11 @@ export function Bullets({ texts }: { texts: string[] }) {
 }
 
 /** What to know first, under a heading; nothing where there is nothing. */
-export function WarningBox({ heading, texts }: { heading: string; texts: string[] }) {
+export function WarningBox({ heading, texts, level: Level = 'h3' }: { heading: string; texts: string[]; level?: 'h2' | 'h3' }) {
   if (texts.length === 0) return null;
   return (
     <aside class="warnings" aria-label={heading}>
-      <h3>{heading}</h3>
+      <Level>{heading}</Level>
       <Bullets texts={texts} />
     </aside>
   );

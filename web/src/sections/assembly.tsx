@@ -63,7 +63,6 @@ function JointPart({ joint }: { joint: Joint | null }) {
 }
 
 function PeaksTable({ peaks }: { peaks: TipPeak[] }) {
-  if (peaks.length === 0) return null;
   const columns: Column<TipPeak>[] = [
     { heading: 'FRF', cell: ({ frf }) => frf },
     { heading: 'Frequency (Hz)', number: true, cell: (peak) => fixed(peak.frequency_hz, 1) },

@@ -30,7 +30,6 @@ function Verdict({ placement }: { placement: CellPlacement }) {
 }
 
 function MissesTable({ placement: { misses, program } }: { placement: CellPlacement }) {
-  if (misses.length === 0) return null;
   return (
     <Table
       caption="Poses that cannot be taken, in the way that misses by least"

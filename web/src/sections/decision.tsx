@@ -173,7 +173,6 @@ function timeText({ cutting_time_s: time, limit }: OtherSpeed): string {
 
 /** `several`: each is of one of several stretches. */
 function OtherSpeeds({ speeds, several }: { speeds: OtherSpeed[]; several: boolean }) {
-  if (speeds.length === 0) return null;
   return (
     <Table
       caption="Other spindle speeds"

@@ -191,7 +191,6 @@ function HighestTable({ program }: { program: Program }) {
 
 function WorstTable({ program }: { program: Program }) {
   const { worst, highest } = program;
-  if (worst.length === 0) return null;
   const columns: Column<WorstBlock>[] = [
     { heading: 'Block', number: true, cell: (row) => fixed(row.block, 0) },
     { heading: 'Line', number: true, cell: (row) => fixed(row.line, 0) },

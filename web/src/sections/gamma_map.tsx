@@ -15,6 +15,7 @@ function GammaTable({ map }: { map: GammaMap }) {
   return (
     <DetailsTable
       summary="γ and margin along the path as a table"
+      quiet={false}
       caption="γ and margin at some of the blocks"
       rows={rows}
       columns={[

@@ -50,10 +50,10 @@ function CutsTable({ cuts }: { cuts: Cut[] }) {
 
 function LimitTable({ lobes }: { lobes: Lobes }) {
   const { spindle_speed_rpm: speed, limit_mm: limit, searched_depth_mm: searched } = lobes;
-  if (speed.length === 0) return null;
   return (
     <DetailsTable
       summary="The limit as a table"
+      quiet={false}
       caption="Limit depth at some of the computed speeds"
       rows={someOf(speed.length)}
       columns={[
@@ -72,7 +72,6 @@ interface PointsTableProps {
 
 /** Points that were asked for; nothing where there are none. */
 export function PointsTable({ points, heading, valueOf }: PointsTableProps) {
-  if (points.length === 0) return null;
   return (
     <Table
       caption="Points that were asked for"

@@ -76,7 +76,6 @@ function Plots({ monitor }: { monitor: Monitor }) {
 }
 
 function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
-  if (alarms.length === 0) return null;
   return (
     <Table
       caption="Alarms by frequency"
@@ -97,7 +96,6 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
 }
 
 function EventsTable({ events }: { events: MonitorEvent[] }) {
-  if (events.length === 0) return null;
   return (
     <DetailsTable
       summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}

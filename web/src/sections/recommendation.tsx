@@ -71,7 +71,6 @@ function Why({ cut }: { cut: Recommendation }) {
 }
 
 function Alternatives({ cuts }: { cuts: Recommendation[] }) {
-  if (cuts.length === 0) return null;
   return (
     <Table
       caption="Alternatives"

@@ -20,7 +20,6 @@ function Outcome({ simulation }: { simulation: SimulationDocument }) {
 }
 
 function Walls({ walls }: Pick<SimulationDocument, 'walls'>) {
-  if (walls.length === 0) return null;
   return (
     <Table
       caption="Surface left on the walls (positive: material left)"

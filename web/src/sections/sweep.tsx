@@ -21,6 +21,7 @@ export function SweepSection({ sweep }: { sweep: SweepDocument }) {
       <PointsTable points={points} heading={`${name} (${unit})`} valueOf={valueOf} />
       <DetailsTable
         summary="Stable intervals as a table"
+        quiet={false}
         caption="Stable intervals at some of the computed speeds"
         rows={someOf(stable.length)}
         columns={[

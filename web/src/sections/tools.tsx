@@ -11,7 +11,6 @@ function remark({ failure, reason, recommended }: ToolRow): string {
 
 function Modes({ tools }: { tools: ToolRow[] }) {
   const rows = tools.flatMap(({ tool, modes, fit_relative_error: error }) => modes.map((mode) => ({ tool, error, ...mode })));
-  if (rows.length === 0) return null;
   return (
     <DetailsTable
       summary="Modes of every tool"
