@@ -5,7 +5,7 @@ import { thinSpace, type Theme } from './figures/theme';
 import { inAir, stable, unstable, type PathColours, type PathData } from './path/contract';
 import { dash, fixed, significant } from './text';
 
-type NumberColumn = { [K in keyof BlockColumns]-?: Num[] extends NonNullable<BlockColumns[K]> ? K : never }[keyof BlockColumns];
+export type NumberColumn = { [K in keyof BlockColumns]-?: Num[] extends NonNullable<BlockColumns[K]> ? K : never }[keyof BlockColumns];
 
 /** A value of blocks that is shown of each, and that the path can be coloured by. */
 export interface Quantity {
@@ -17,6 +17,12 @@ export interface Quantity {
 /** What blocks.json says of the key. */
 export function saidOf(key: Quantity['key']) {
   return keys[`blocks.${key}`];
+}
+
+/** "Peak force (N)". */
+export function headingOf(key: Quantity['key'], name: string): string {
+  const { unit } = saidOf(key);
+  return unit === '' ? name : `${name} (${unit})`;
 }
 
 type NumberQuantity = Quantity & { key: NumberColumn };

@@ -40,12 +40,7 @@ export function reachOf({ peaks, spindle_speed_rpm: speed }: ExplanationDocument
 }
 
 /** Slots of one depth and speed, by feed. */
-export interface SlotGroup {
-  label: string;
-  slots: Slot[];
-}
-
-export function slotGroups(slots: Slot[]): SlotGroup[] {
+export function slotGroups(slots: Slot[]): { label: string; slots: Slot[] }[] {
   const groups = new Map<string, Slot[]>();
   for (const slot of slots) {
     const speed = slot.spindle_speed_rpm === null ? '' : `, ${fixed(slot.spindle_speed_rpm, 0)} rpm`;
@@ -55,19 +50,11 @@ export function slotGroups(slots: Slot[]): SlotGroup[] {
   return [...groups].map(([label, own]) => ({ label, slots: [...own].sort((a, b) => a.feed_per_tooth_mm - b.feed_per_tooth_mm) }));
 }
 
-/** A row of the table of coefficients: cutting and edge of one direction. */
-export interface CoefficientRow {
-  direction: string;
-  cutting: { value: Num; std: Num };
-  edge: { value: Num; std: Num };
-  r_squared: Num;
-  noise_n: Num;
-}
-
 type Identification = CoefficientsDocument['identification'];
 type Fitted = Pick<Identification, 'std'> & Pick<CoefficientsDocument, 'coefficients'>;
 
-export function coefficientRows({ coefficients, std }: Fitted, quality?: Identification): CoefficientRow[] {
+/** A row a direction: its cutting and its edge coefficient. */
+export function coefficientRows({ coefficients, std }: Fitted, quality?: Identification) {
   return (['tangential', 'radial', 'axial'] as const).flatMap((direction) => {
     const pair = (key: keyof typeof std) => ({ value: coefficients[key], std: std[key] });
     const row = {
@@ -81,19 +68,12 @@ export function coefficientRows({ coefficients, std }: Fitted, quality?: Identif
   });
 }
 
-/** A value of a joint as it is shown. */
-export interface JointRow {
-  name: string;
-  unit: string;
-  value: Num;
-  std: Num;
-  identifiable: boolean;
-  visible_up_to: Num;
-}
+export type CoefficientRow = ReturnType<typeof coefficientRows>[number];
 
 const jointKeys: Record<string, { unit: string; meaning: string }> = keysOfJoint;
 
-export function jointRows({ joint, std, identifiable, visible_up_to }: JointDocument): JointRow[] {
+/** The values of a joint as they are shown. */
+export function jointRows({ joint, std, identifiable, visible_up_to }: JointDocument) {
   const deviations: Record<string, Num> = std;
   const known: Record<string, boolean> = identifiable;
   const visible: Record<string, Num> = visible_up_to;

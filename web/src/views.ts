@@ -49,17 +49,8 @@ export function partOf({ label, spindle_speed_rpm, limit_depth_mm: limit_mm }: P
   return { label, spindle_speed_rpm, limit_mm, searched_depth_mm, band: null, boundary: [], map: null };
 }
 
-/** The limit over the direction of the feed. */
-export interface FeedDirections {
-  direction_deg: number[];
-  lowest_limit_mm: Num[]; // over all speeds
-  limit_at_speed_mm: Num[] | null; // where a speed is recommended
-  spindle_speed_rpm: Num; // the recommended
-  used_direction_deg: Num;
-  searched_depth_mm: Num;
-}
-
-export function feedOf({ feed_directions: rows = [], feed_direction_deg: used, recommended }: Plan, searched: Num): FeedDirections {
+/** The limit over the direction of the feed; that at a speed where one is recommended. */
+export function feedOf({ feed_directions: rows = [], feed_direction_deg: used, recommended }: Plan, searched: Num) {
   return {
     direction_deg: rows.map((row) => row.feed_direction_deg),
     lowest_limit_mm: rows.map((row) => row.lowest_limit_mm),
@@ -69,6 +60,8 @@ export function feedOf({ feed_directions: rows = [], feed_direction_deg: used, r
     searched_depth_mm: searched,
   };
 }
+
+export type FeedDirections = ReturnType<typeof feedOf>;
 
 /** A curve over its own axis. */
 export interface Curve {

@@ -1,4 +1,5 @@
 // Forces: over a revolution, along a program, over the spindle's rotation.
+import { keys } from '#schema/forces';
 import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, WorstBlock } from '../documents';
 import { engagementFigure, forceCurves, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
 import { trackFigure } from '../figures/track';
@@ -35,24 +36,25 @@ function Components({ turn }: { turn: Revolution }) {
   );
 }
 
+const totals = [
+  ['torque_n_m', 'Torque, mean'],
+  ['peak_torque_n_m', 'Torque, peak'],
+  ['power_w', 'Power, mean'],
+  ['removal_rate_mm3_per_s', 'Removal rate'],
+  ['chip_area_mm2', 'Chip area across the feed'],
+  ['peak_deflection_um', 'Deflection, peak'],
+] as const;
+
 function Totals({ turn }: { turn: Revolution }) {
-  const rows: [string, Num, string][] = [
-    ['Torque, mean', turn.torque_n_m, 'N·m'],
-    ['Torque, peak', turn.peak_torque_n_m, 'N·m'],
-    ['Power, mean', turn.power_w, 'W'],
-    ['Removal rate', turn.removal_rate_mm3_per_s, 'mm³/s'],
-    ['Chip area across the feed', turn.chip_area_mm2, 'mm²'],
-    ['Deflection, peak', turn.peak_deflection_um, 'µm'],
-  ];
   return (
     <Table
       caption="Over one revolution"
       columns={[
-        { heading: '', cell: ([name]) => name },
-        { heading: 'Value', number: true, cell: ([, value]) => significant(value) },
-        { heading: 'Unit', cell: ([, , unit]) => unit },
+        { heading: '', cell: ([, name]) => name },
+        { heading: 'Value', number: true, cell: ([key]) => significant(turn[key]) },
+        { heading: 'Unit', cell: ([key]) => keys[key].unit },
       ]}
-      rows={rows.filter(([, value]) => value !== null)}
+      rows={totals.filter(([key]) => turn[key] !== null)}
     />
   );
 }
@@ -149,14 +151,16 @@ function powerName(program: Program): string {
 type HighestRow = Highest & { name: string; unit: string; limit: Num };
 
 function highestRows(program: Program): HighestRow[] {
-  const { highest } = program;
-  const row = (name: string, entry: Highest | null, unit: string, limit: Num = null) => (entry === null ? [] : [{ ...entry, name, unit, limit }]);
+  const row = (name: string, key: keyof Program['highest'], limit: Num = null) => {
+    const entry = program.highest[key];
+    return entry === null ? [] : [{ ...entry, name, unit: keys[`highest.${key}`].unit, limit }];
+  };
   return [
-    ...row('Force, peak', highest.peak_f_n, 'N'),
-    ...row('Torque over a revolution', highest.revolution_torque_n_m, 'N·m', program.torque_limit_n_m),
-    ...row('Torque, peak', highest.peak_torque_n_m, 'N·m'),
-    ...row(powerName(program), highest.sustained_power_w, 'W', program.power_limit_w),
-    ...row('Deflection over a revolution', highest.peak_deflection_um, 'µm'),
+    ...row('Force, peak', 'peak_f_n'),
+    ...row('Torque over a revolution', 'revolution_torque_n_m', program.torque_limit_n_m),
+    ...row('Torque, peak', 'peak_torque_n_m'),
+    ...row(powerName(program), 'sustained_power_w', program.power_limit_w),
+    ...row('Deflection over a revolution', 'peak_deflection_um'),
   ];
 }
 
@@ -189,22 +193,23 @@ function HighestTable({ program }: { program: Program }) {
   );
 }
 
+type NumberKey = 'axial_depth_mm' | 'radial_depth_mm' | keyof Program['highest'];
+
 function WorstTable({ program }: { program: Program }) {
   const { worst, highest } = program;
+  const shown = (name: string, key: NumberKey): Column<WorstBlock> => ({ heading: `${name} (${keys[`worst.${key}`].unit})`, number: true, cell: (row) => significant(row[key]) });
   const columns: Column<WorstBlock>[] = [
     { heading: 'Block', number: true, cell: (row) => fixed(row.block, 0) },
     { heading: 'Line', number: true, cell: (row) => fixed(row.line, 0) },
     { heading: 'Tip at x, y, z (mm)', number: true, cell: (row) => coordinates([row.x_mm, row.y_mm, row.z_mm]) },
-    { heading: 'Axial depth (mm)', number: true, cell: (row) => significant(row.axial_depth_mm) },
-    { heading: 'Radial depth (mm)', number: true, cell: (row) => significant(row.radial_depth_mm) },
-    { heading: 'Peak force (N)', number: true, cell: (row) => significant(row.peak_f_n) },
+    shown('Axial depth', 'axial_depth_mm'),
+    shown('Radial depth', 'radial_depth_mm'),
+    shown('Peak force', 'peak_f_n'),
     { heading: `Mean force on the ${program.force_on} while cutting x, y, z (N)`, number: true, cell: (row) => coordinates([row.mean_fx_n, row.mean_fy_n, row.mean_fz_n]) },
-    { heading: 'Torque over a revolution (N·m)', number: true, cell: (row) => significant(row.revolution_torque_n_m) },
-    { heading: `${powerName(program)} (W)`, number: true, cell: (row) => significant(row.sustained_power_w) },
+    shown('Torque over a revolution', 'revolution_torque_n_m'),
+    shown(powerName(program), 'sustained_power_w'),
   ];
-  if (highest.peak_deflection_um !== null) {
-    columns.push({ heading: 'Deflection (µm)', number: true, cell: (row) => significant(row.peak_deflection_um) });
-  }
+  if (highest.peak_deflection_um !== null) columns.push(shown('Deflection', 'peak_deflection_um'));
   return <Table caption="The blocks with the highest peak force" columns={columns} rows={worst} />;
 }
 

@@ -4,7 +4,7 @@ import type { BlockColumns, Fact } from '../documents';
 import { dark, light, thinSpace, type Theme } from '../figures/theme';
 import { BlockSteps, Facts } from '../parts';
 import type { PathData, PathView, Side } from '../path/contract';
-import { coloursOf, gradient, pathData, rangeOf, regimes, saidOf, samePlaces, worstBlocks, type Quantity } from '../path_views';
+import { coloursOf, gradient, headingOf, pathData, rangeOf, regimes, samePlaces, worstBlocks, type Quantity } from '../path_views';
 import { Choice, onColours } from '../plot';
 import { significant } from '../text';
 
@@ -31,13 +31,12 @@ function Regimes({ theme }: { theme: Theme }) {
 
 function ColourBar({ columns, quantity, theme }: { columns: BlockColumns; quantity: Quantity; theme: Theme }) {
   const { key, name, worse } = quantity;
-  const { unit } = saidOf(key);
   const range = useMemo(() => rangeOf(key === 'regime' ? [] : (columns[key] ?? [])), [columns, key]);
   if (key === 'regime') return <Regimes theme={theme} />;
   const { low, high, below, above } = range;
   return (
     <div class="colour-bar">
-      <div>{unit === '' ? name : `${name} (${unit})`}</div>
+      <div>{headingOf(key, name)}</div>
       <div class="scale" style={{ background: gradient(theme, worse) }} />
       <div class="ends">
         <span>{`${below ? `≤${thinSpace}` : ''}${significant(low)}`}</span>

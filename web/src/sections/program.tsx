@@ -4,7 +4,7 @@ import type { BlockColumns, BlocksDocument, LimitOver } from '../documents';
 import { deepest, limitFigure, overFigure } from '../figures/program_limit';
 import type { Theme } from '../figures/theme';
 import { Bullets, Facts, Section, Table, type Column } from '../parts';
-import { blockFacts, boundOf, isUnstable, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks } from '../path_views';
+import { blockFacts, boundOf, headingOf, isUnstable, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks, type NumberColumn } from '../path_views';
 import { Plot, type Draw } from '../plot';
 import { useSelection } from '../selection';
 import { dash, fixed, significant } from '../text';
@@ -27,11 +27,11 @@ interface BlocksTableProps {
 
 /** Some of the blocks; the number of each selects it. */
 export function BlocksTable({ caption, columns, rows, selected, select }: BlocksTableProps) {
-  const number = (heading: string, column: (number | null)[] | undefined): Column<number> => ({
-    heading,
+  const number = (name: string, key: NumberColumn): Column<number> => ({
+    heading: headingOf(key, name),
     number: true,
     optional: true,
-    cell: (i) => significant(numberAt(column, i)),
+    cell: (i) => significant(numberAt(columns[key], i)),
   });
   const shown: Column<number>[] = [
     {
@@ -44,15 +44,15 @@ export function BlocksTable({ caption, columns, rows, selected, select }: Blocks
       ),
     },
     { heading: 'Line', number: true, cell: (i) => fixed(columns.line[i] ?? null, 0) },
-    number('|μ|', columns.spectral_radius),
-    number('Gain margin', columns.gain_margin),
-    number('Margin', columns.stability_margin),
-    number('Depth (mm)', columns.axial_depth_mm),
+    number('|μ|', 'spectral_radius'),
+    number('Gain margin', 'gain_margin'),
+    number('Margin', 'stability_margin'),
+    number('Depth', 'axial_depth_mm'),
     { heading: 'Limit, 5 – 95 % (mm)', number: true, cell: (i) => boundOf(columns, i) },
-    number('Chatter (Hz)', columns.chatter_frequency_hz),
+    number('Chatter', 'chatter_frequency_hz'),
     { heading: 'Mode', optional: true, cell: (i) => together(columns.mode?.[i] ?? dash) },
     { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
-    number('Peak force (N)', columns.peak_f_n),
+    number('Peak force', 'peak_f_n'),
   ];
   const rowClass = (i: number) => [isUnstable(columns, i) && 'chatter', i === selected && 'selected'].filter(Boolean).join(' ');
   return <Table caption={caption} columns={shown} rows={rows} rowClass={rowClass} />;
