@@ -22,25 +22,21 @@ function Verdict({ method }: { method: SmoothedBy }) {
   );
 }
 
-interface MethodColumn extends Column<SmoothedBy> {
-  shownIf?: (method: SmoothedBy) => Num; // some method has it
+function ifKnown(heading: string, value: (method: SmoothedBy) => Num, text: (value: Num) => string = significant): Column<SmoothedBy> {
+  return { heading, number: true, optional: true, cell: (m) => text(value(m)) };
 }
 
-function shownIfKnown(heading: string, value: (method: SmoothedBy) => Num, text: (value: Num) => string = significant): MethodColumn {
-  return { heading, number: true, cell: (m) => text(value(m)), shownIf: value };
-}
-
-const methodColumns: MethodColumn[] = [
+const methodColumns: Column<SmoothedBy>[] = [
   { heading: 'Method', cell: (m) => m.method },
   { heading: 'Duration (s)', number: true, cell: (m) => significant(m.duration_s) },
-  shownIfKnown('Bound (s)', (m) => m.lower_bound_s),
+  ifKnown('Bound (s)', (m) => m.lower_bound_s),
   { heading: 'Violations of limits', number: true, cell: (m) => fixed(m.violations, 0) },
-  shownIfKnown('Joint limits used', jointShare, (share) => percent(share, 0)),
+  ifKnown('Joint limits used', jointShare, (share) => percent(share, 0)),
   { heading: 'Tip error (µm)', number: true, cell: (m) => significant(scaled(m.max_tip_error_mm, 1e3)) },
   { heading: 'Axis error (°)', number: true, cell: (m) => significant(m.max_axis_error_deg) },
-  shownIfKnown('Tracking error (°)', (m) => scaled(trackingError(m, 'rad'), 180 / Math.PI)),
-  shownIfKnown('Tracking error (µm)', (m) => scaled(trackingError(m, 'm'), 1e6)),
-  shownIfKnown('ΣT2 (s)', (m) => m.sum_t2_s),
+  ifKnown('Tracking error (°)', (m) => scaled(trackingError(m, 'rad'), 180 / Math.PI)),
+  ifKnown('Tracking error (µm)', (m) => scaled(trackingError(m, 'm'), 1e6)),
+  ifKnown('ΣT2 (s)', (m) => m.sum_t2_s),
   { heading: 'Planned in (s)', number: true, cell: (m) => significant(m.plan_seconds) },
 ];
 
@@ -52,7 +48,7 @@ function MethodsTable({ methods }: { methods: SmoothedBy[] }) {
   return (
     <Table
       caption={methods.length > 1 ? 'Methods side by side' : 'In short'}
-      columns={methodColumns.filter(({ shownIf }) => shownIf === undefined || methods.some((method) => shownIf(method) !== null))}
+      columns={methodColumns}
       rows={methods}
       rowClass={violates}
     />
