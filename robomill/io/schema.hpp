@@ -101,6 +101,11 @@ struct Row {
     key.words = std::move(known);
     return *this;
   }
+  /// The range of a form's slider, in the key's unit.
+  Row& slider(double lowest, double highest, double step) {
+    key.slider = Slider{.lowest = lowest, .highest = highest, .step = step};
+    return *this;
+  }
   /// The function gives numbers in the key's unit.
   Row& in_unit() {
     factor = 1.0;
@@ -151,6 +156,22 @@ template <class T, class E, std::size_t n>
     file.choice(path, names, out.*member);
   };
   row.write = [member, &names](const T& object, const Row<T>&) { return text_or_null(name_in(names, object.*member)); };
+  return row;
+}
+
+/// The same; none where the key is absent.
+template <class T, class E, std::size_t n>
+[[nodiscard]] Row<T> key(std::string name, std::optional<E> T::*member, const Name<E> (&names)[n],
+                         std::string meaning) {
+  Row<T> row{.key = {.name = std::move(name), .holds = Holds::word, .meaning = std::move(meaning)}};
+  for (const auto& [word, value] : names) row.key.words.emplace_back(word);
+  row.read = [member, &names](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
+    E value{};
+    if (file.choice(path, names, value)) out.*member = value;
+  };
+  row.write = [member, &names](const T& object, const Row<T>&) {
+    return object.*member ? text_or_null(name_in(names, *(object.*member))) : Json();
+  };
   return row;
 }
 

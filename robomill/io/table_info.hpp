@@ -2,6 +2,7 @@
 // For .cpp files inside the library, as json.hpp.
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct Rule {
 
 struct TableInfo;
 
+/// Of a form's slider, in the unit of its key.
+struct Slider {
+  double lowest = 0.0, highest = 0.0, step = 0.0;
+};
+
 /// A key of a table, as schemas, forms and docs show it.
 struct Key {
   std::string name = {};
@@ -49,6 +55,7 @@ struct Key {
   std::string meaning = {};             ///< a phrase
   std::string hint = {};                ///< what a reader says where it is missing
   Json default_value = nullptr;         ///< null: none
+  std::optional<Slider> slider = {};    ///< where a form moves it
   [[nodiscard]] std::string unit() const { return key_unit(name).text; }
 };
 

@@ -22,7 +22,7 @@
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/process/blocks/dynamics.hpp"
-#include "robomill/process/files/cut_fields.hpp"
+#include "robomill/process/files/structure_schema.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -18,8 +18,8 @@ double widest(const Stock& stock) {
 }
 
 void validate_box(const Stock& stock) {
-  static constexpr std::array<const char*, 3> low = {"min_m.x", "min_m.y", "min_m.z"};
-  static constexpr std::array<const char*, 3> high = {"max_m.x", "max_m.y", "max_m.z"};
+  static constexpr std::array<const char*, 3> low = {"min_m[1]", "min_m[2]", "min_m[3]"};
+  static constexpr std::array<const char*, 3> high = {"max_m[1]", "max_m[2]", "max_m[3]"};
   for (int i = 0; i < 3; ++i) {
     const auto name = static_cast<std::size_t>(i);
     require_finite(low[name], stock.min_m[i], "m");
@@ -51,8 +51,8 @@ void Stock::validate() const {
     validate_box(*this);
     return;
   }
-  require_finite("center_m.x", center_m.x(), "m");
-  require_finite("center_m.y", center_m.y(), "m");
+  require_finite("center_m[1]", center_m.x(), "m");
+  require_finite("center_m[2]", center_m.y(), "m");
   if (shape == Shape::turned) {
     validate_outline(outline_m);
     if (!(widest(*this) > 0.0)) throw InvalidInput("outline_m.r", 0.0, "m", "must be > 0 somewhere");

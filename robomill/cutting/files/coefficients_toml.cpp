@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -13,47 +13,34 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/files/coefficients_schema.hpp"
+#include "robomill/cutting/files/cutter_schema.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/toml/file.hpp"
 
 namespace robomill::cutting {
 namespace {
 
-struct Field {
-  const char* key = nullptr;
-  const char* member = nullptr;
-  double factor = 0.0;
-  std::vector<double> MillingCoefficients::*values = nullptr;
-  bool edge = false;
-};
-
-constexpr std::array<Field, 6> fields = {{
-    {"tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, &MillingCoefficients::tangential_n_per_m2},
-    {"radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, &MillingCoefficients::radial_n_per_m2},
-    {"axial_n_per_mm2", "axial_n_per_m2", units::n_per_mm2, &MillingCoefficients::axial_n_per_m2},
-    {"tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
-     &MillingCoefficients::tangential_edge_n_per_m, true},
-    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, &MillingCoefficients::radial_edge_n_per_m, true},
-    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &MillingCoefficients::axial_edge_n_per_m, true},
-}};
-
-bool read_edge_measure(io::TomlFile& file, MillingCoefficients& out) {
-  return file.choice<EdgeMeasure>("coefficients.edge_per",
-                                  {{"width", EdgeMeasure::width}, {"edge-length", EdgeMeasure::edge_length}},
-                                  out.edge_measure);
-}
-
-/// The helix that inclines the edge: coefficients.helix_deg, else the tool's; a tool without one has straight edges.
-double read_helix(io::TomlFile& file) {
+/// The helix that inclines the edge: the table's own, else the tool's; a tool without one has straight edges.
+double helix_of(io::TomlFile& file, const CoefficientKeys& given) {
+  if (given.helix_rad) return *given.helix_rad;
   double helix_rad = 0.0;
-  const char* const key = file.has("coefficients.helix_deg") ? "coefficients.helix_deg" : "tool.helix_deg";
+  const std::string key = fmt::format("tool.{}", helix_key), own_key = fmt::format("coefficients.{}", helix_key);
   if (file.has(key) && !file.is_number(key)) {
-    throw file.reject(key, "must be one angle where a material is named", "Give coefficients.helix_deg");
+    throw file.reject(key, "must be one angle where a material is named", "Give " + own_key);
   }
   if (!file.number(key, "helix_rad", units::deg, helix_rad) && !file.has("tool")) {
-    file.require("coefficients.helix_deg", "The cutter's, which inclines its edges");
+    file.require(own_key, "The cutter's, which inclines its edges");
   }
   return helix_rad;
+}
+
+/// @throws InvalidInput at the first of the keys of [coefficients] that is given
+void reject_any(const io::TomlFile& file, std::initializer_list<const char*> keys, const char* rule) {
+  for (const char* name : keys) {
+    const std::string key = std::string("coefficients.") + name;
+    if (file.has(key)) throw file.reject(key, rule);
+  }
 }
 
 const Material& find_material(const io::TomlFile& file, const std::string& key, const std::string& name) {
@@ -64,19 +51,17 @@ const Material& find_material(const io::TomlFile& file, const std::string& key, 
   }
 }
 
-MillingCoefficients from_orthogonal_tests(io::TomlFile& file, const Material& known) {
-  double rake_rad = 0.0, chip_thickness_m = 0.0;
+MillingCoefficients from_orthogonal_tests(io::TomlFile& file, const Material& known, const CoefficientKeys& given) {
   file.require("coefficients.chip_thickness_mm", "The mean of the cut; in a slot 0.64 of the feed per tooth");
-  file.number("coefficients.rake_deg", "rake_rad", units::deg, rake_rad);
-  file.number("coefficients.chip_thickness_mm", "chip_thickness_m", units::mm, chip_thickness_m);
+  reject_any(file, {"set", "radial_ratio"}, "has no part in orthogonal tests");
   if (!known.orthogonal) {
     throw file.reject("coefficients.rake_deg",
                       fmt::format("is for orthogonal tests, and of {} none are known", known.name),
                       "Leave it out: the material's published coefficients are taken then");
   }
-  const double helix_rad = read_helix(file);
+  const double helix_rad = helix_of(file, given);
   try {
-    return milling_coefficients(*known.orthogonal, rake_rad, helix_rad, chip_thickness_m);
+    return milling_coefficients(*known.orthogonal, *given.rake_rad, helix_rad, *given.chip_thickness_m);
   } catch (const InvalidInput& error) {
     const InvalidInput reported = file.located(error);
     if (!reported.parts().where.empty()) throw reported;
@@ -85,35 +70,31 @@ MillingCoefficients from_orthogonal_tests(io::TomlFile& file, const Material& kn
 }
 
 /// One of the material's sets: coefficients.set, counted from 1, else the best for the cutter.
-std::size_t chosen_set(io::TomlFile& file, const std::string& key, const Material& known, CutterKind kind) {
+std::size_t chosen_set(const io::TomlFile& file, const std::string& key, const Material& known,
+                       const std::optional<int>& set, CutterKind kind) {
   const std::optional<std::size_t> best = best_set(known, kind);
   if (!best) {
     throw file.reject(key, "is a material of which no force coefficients are known here",
                       "Only speeds and feeds; give its coefficients as numbers");
   }
-  int set = 0;
-  if (!file.integer("coefficients.set", "set", set)) return *best;
+  if (!set) return *best;
   const std::size_t sets = known.coefficients.size();
-  if (set < 1 || static_cast<std::size_t>(set) > sets) {
+  if (static_cast<std::size_t>(*set) > sets) {
     throw file.reject("coefficients.set", fmt::format("must lie between 1 and {}, the sets of {}", sets, known.name));
   }
-  return static_cast<std::size_t>(set) - 1;
+  return static_cast<std::size_t>(*set) - 1;
 }
 
 /// At which chip thickness a power law is taken as a straight line.
-double chip_of(io::TomlFile& file, const PublishedCoefficients& set, const CutAtHand& cut) {
-  double chip_thickness_m = cut.mean_chip_thickness_m;
+double chip_of(const io::TomlFile& file, const PublishedCoefficients& set, const CoefficientKeys& given,
+               const CutAtHand& cut) {
   const char* const key = "coefficients.chip_thickness_mm";
-  if (!set.is_power()) {
-    if (file.has(key)) {
-      throw file.reject(key, "has no part in coefficients of a straight line over the chip",
-                        "Beside coefficients.rake_deg it takes those of orthogonal tests");
-    }
-    return chip_thickness_m;
+  if (!set.is_power() && given.chip_thickness_m) {
+    throw file.reject(key, "has no part in coefficients of a straight line over the chip",
+                      "Beside coefficients.rake_deg it takes those of orthogonal tests");
   }
-  const bool given = file.number(key, "chip_thickness_m", units::mm, chip_thickness_m);
-  if (given && !(chip_thickness_m > 0.0)) throw file.reject(key, "must be > 0");
-  if (!(chip_thickness_m > 0.0)) {
+  const double chip_thickness_m = given.chip_thickness_m.value_or(cut.mean_chip_thickness_m);
+  if (set.is_power() && !(chip_thickness_m > 0.0)) {
     file.require(key,
                  "The force is a power of the chip: give its mean here, or cut.feed_per_tooth_mm where depth and "
                  "direction tell it");
@@ -122,23 +103,18 @@ double chip_of(io::TomlFile& file, const PublishedCoefficients& set, const CutAt
 }
 
 /// Kr over Kt for a set that has no radial coefficient.
-std::optional<double> radial_ratio_of(io::TomlFile& file, const std::string& key, const Material& known,
-                                      const PublishedCoefficients& set) {
-  double ratio = 0.0;
-  const bool given = file.number("coefficients.radial_ratio", "radial_ratio", 1.0, ratio);
-  if (set.has_radial()) {
-    if (given)
-      throw file.reject("coefficients.radial_ratio", "has no part: the set has a radial coefficient of its own");
-    return std::nullopt;
+std::optional<double> radial_ratio_of(const io::TomlFile& file, const std::string& key, const Material& known,
+                                      const PublishedCoefficients& set, const std::optional<double>& ratio) {
+  if (set.has_radial() && ratio) {
+    throw file.reject("coefficients.radial_ratio", "has no part: the set has a radial coefficient of its own");
   }
-  if (!given) {
+  if (!set.has_radial() && !ratio) {
     throw file.reject(
         key, fmt::format("has no radial coefficient: [{}] states the tangential one alone", set.source),
         fmt::format("Write [coefficients] with material = \"{}\" and radial_ratio, Kr over Kt: 0.16 to 0.6 "
                     "where the sources here state both",
                     known.name));
   }
-  if (!(ratio >= 0.0 && ratio <= 2.0)) throw file.reject("coefficients.radial_ratio", "must lie between 0 and 2");
   return ratio;
 }
 
@@ -177,14 +153,15 @@ std::vector<std::string> notes_of(const Material& known, std::size_t index, cons
   return notes;
 }
 
-CoefficientTable from_published(io::TomlFile& file, const std::string& key, const Material& known,
-                                const CutAtHand& cut) {
-  const std::size_t index = chosen_set(file, key, known, cut.kind);
+CoefficientTable from_published(const io::TomlFile& file, const std::string& key, const Material& known,
+                                const CoefficientKeys& given, const CutAtHand& cut) {
+  reject_any(file, {helix_key}, "goes with rake_deg, of orthogonal tests");
+  const std::size_t index = chosen_set(file, key, known, given.set, cut.kind);
   const PublishedCoefficients& set = known.coefficients[index];
   CoefficientTable out;
   MillingCoefficients& k = out.coefficients;
-  const std::optional<double> ratio = radial_ratio_of(file, key, known, set);
-  k = set.at(chip_of(file, set, cut));
+  const std::optional<double> ratio = radial_ratio_of(file, key, known, set, given.radial_ratio);
+  k = set.at(chip_of(file, set, given, cut));
   if (ratio) {
     k.radial_n_per_m2 = times(k.tangential_n_per_m2, *ratio);
     k.radial_edge_n_per_m = times(k.tangential_edge_n_per_m, *ratio);
@@ -195,22 +172,23 @@ CoefficientTable from_published(io::TomlFile& file, const std::string& key, cons
     out.std_ratio = tests ? set.tangential_std_n_per_m2 / set.line.tangential_n_per_m2.front() : spread.std_ratio;
     out.std_of = tests ? "the tests of its source" : "the sets of its material";
   }
-  out.notes = notes_of(known, index, spread, file.has("coefficients.set") ? 0 : sets_alike(known, cut.kind));
+  out.notes = notes_of(known, index, spread, given.set ? 0 : sets_alike(known, cut.kind));
   if (set.kind && *set.kind != cut.kind) out.notes.emplace_back("Its tests had another kind of cutter than tool.kind.");
   out.published = set;
   return out;
 }
 
-CoefficientTable from_material(io::TomlFile& file, const std::string& key, const std::string& name,
+/// @param key  that names it
+CoefficientTable from_material(io::TomlFile& file, const std::string& key, const CoefficientKeys& given,
                                const CutAtHand& cut) {
-  const Material& known = find_material(file, key, name);
+  const Material& known = find_material(file, key, given.material);
   CoefficientTable out;
-  if (file.has("coefficients.rake_deg")) {
-    out.coefficients = from_orthogonal_tests(file, known);
+  if (given.rake_rad) {
+    out.coefficients = from_orthogonal_tests(file, known, given);
     out.notes.push_back(fmt::format("The coefficients are those of {} by orthogonal tests [{}].", known.name,
                                     known.orthogonal->source));
   } else {
-    out = from_published(file, key, known, cut);
+    out = from_published(file, key, known, given, cut);
   }
   out.material = known.name;
   out.conditions = known.conditions;
@@ -224,63 +202,55 @@ std::string words_of(const FromTo& range, double factor) {
 
 /// A material's coefficients with those of the edge that the table gives in place of its own.
 MillingCoefficients with_own_edge(MillingCoefficients material, const MillingCoefficients& own) {
-  for (const Field& field : fields) {
-    if (!(own.*field.values).empty()) material.*field.values = own.*field.values;
+  for (const ForceCoefficient& one : force_coefficients) {
+    if (!(own.*one.values).empty()) material.*one.values = own.*one.values;
   }
   if (own.edge_measure != EdgeMeasure::by_kind) material.edge_measure = own.edge_measure;
   return material;
 }
 
 /// The table [coefficients].
-CoefficientTable read_unscaled(io::TomlFile& file, const CutAtHand& cut) {
-  CoefficientTable out;
-  MillingCoefficients& k = out.coefficients;
-  std::filesystem::path other;
-  std::string name;
+CoefficientTable read_unscaled(io::TomlFile& file, const CoefficientKeys& given, const CutAtHand& cut) {
   const char* cutting = nullptr;  // a coefficient that the table itself gives
   const char* edge = nullptr;
-  for (const Field& field : fields) {
-    if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, k.*field.values)) continue;
-    (field.edge ? edge : cutting) = field.key;
+  for (const ForceCoefficient& one : force_coefficients) {
+    if (!(given.own.*one.values).empty()) (one.edge ? edge : cutting) = one.key;
   }
-  const bool measured = read_edge_measure(file, k);
-  if (file.text("coefficients.material", name)) {
+  if (!given.material.empty()) {
     if (cutting != nullptr) {
       throw file.reject("coefficients.material", fmt::format("must not stand beside {}", cutting),
                         "Edge coefficients may; they replace the material's");
     }
-    if (file.has("coefficients.file")) throw file.reject("coefficients.material", "must not stand beside a file");
-    const MillingCoefficients own = std::move(k);
-    out = from_material(file, "coefficients.material", name, cut);
-    k = with_own_edge(out.coefficients, own);
+    if (!given.file.empty()) throw file.reject("coefficients.material", "must not stand beside a file");
+    CoefficientTable out = from_material(file, "coefficients.material", given, cut);
+    out.coefficients = with_own_edge(out.coefficients, given.own);
     return out;
   }
-  if (!file.path("coefficients.file", other)) {
+  reject_any(file, {"set", "radial_ratio", "chip_thickness_mm", "rake_deg", helix_key}, "goes with a material");
+  CoefficientTable out{.coefficients = given.own};
+  if (given.file.empty()) {
     file.require("coefficients.tangential_n_per_mm2",
                  "A number, or a polynomial in the axial position angle (rad); or name a file or a material");
     return out;
   }
-  if (cutting != nullptr || edge != nullptr || measured) {
+  if (cutting != nullptr || edge != nullptr || given.own.edge_measure != EdgeMeasure::by_kind) {
     throw file.reject("coefficients.file", "must not stand beside coefficients of its own");
   }
-  k = read_coefficients(other, out.notes);
+  out.coefficients = read_coefficients(given.file, out.notes);
   return out;
 }
 
 /// Harder or softer than the material or the file says.
-void take_scale(io::TomlFile& file, CoefficientTable& out) {
-  constexpr double most = 10.0;
+void take_scale(const io::TomlFile& file, const CoefficientKeys& given, CoefficientTable& out) {
   const char* const key = "coefficients.scale";
-  double scale = 1.0;
-  if (!file.number(key, "", 1.0, scale)) return;
-  if (!file.has("coefficients.material") && !file.has("coefficients.file")) {
+  if (file.has(key) && given.material.empty() && given.file.empty()) {
     throw file.reject(key, "must stand beside a material or a file", "Numbers of one's own are given as they are");
   }
-  if (!(scale > 0.0 && scale <= most)) throw file.reject(key, fmt::format("must be > 0 and at most {}", most));
-  for (const Field& field : fields) {
-    for (double& value : out.coefficients.*field.values) value *= scale;
+  if (given.scale == 1.0) return;
+  for (const ForceCoefficient& one : force_coefficients) {
+    for (double& value : out.coefficients.*one.values) value *= given.scale;
   }
-  if (scale != 1.0) out.notes.push_back(fmt::format("All coefficients are taken times {:.4g}.", scale));
+  out.notes.push_back(fmt::format("All coefficients are taken times {:.4g}.", given.scale));
 }
 
 }  // namespace
@@ -349,11 +319,13 @@ std::vector<std::string> CoefficientTable::unlike_recommended(const CutAtHand& c
 }
 
 CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut) {
-  if (std::string name; names_a_material(file) && file.text("coefficients", name)) {
-    return from_material(file, "coefficients", name, cut);
+  CoefficientKeys given;
+  if (names_a_material(file) && file.text("coefficients", given.material)) {
+    return from_material(file, "coefficients", given, cut);
   }
-  CoefficientTable out = read_unscaled(file, cut);
-  take_scale(file, out);
+  coefficients_table().read(file, "coefficients", given);
+  CoefficientTable out = read_unscaled(file, given, cut);
+  take_scale(file, given, out);
   return out;
 }
 
@@ -369,12 +341,12 @@ MillingCoefficients read_coefficients(const io::TomlSource& source, std::vector<
 
 std::string coefficients_toml(const MillingCoefficients& coefficients) {
   std::string text = "[coefficients]\n";
-  for (const Field& field : fields) {
-    std::vector<double> values = coefficients.*field.values;
+  for (const ForceCoefficient& one : force_coefficients) {
+    std::vector<double> values = coefficients.*one.values;
     if (values.empty()) continue;
-    for (double& value : values) value /= field.factor;
-    text += values.size() == 1 ? fmt::format("{} = {:.10g}\n", field.key, values.front())
-                               : fmt::format("{} = [{:.10g}]\n", field.key, fmt::join(values, ", "));
+    for (double& value : values) value /= io::key_unit(one.key).factor;
+    text += values.size() == 1 ? fmt::format("{} = {:.10g}\n", one.key, values.front())
+                               : fmt::format("{} = [{:.10g}]\n", one.key, fmt::join(values, ", "));
   }
   if (coefficients.edge_measure == EdgeMeasure::width) text += "edge_per = \"width\"\n";
   if (coefficients.edge_measure == EdgeMeasure::edge_length) text += "edge_per = \"edge-length\"\n";

@@ -40,11 +40,8 @@ struct CoefficientTable {
   [[nodiscard]] std::vector<std::string> unlike_recommended(const CutAtHand& cut) const;
 };
 
-/// `coefficients` of a TOML file, which is the name of a material or a table. The table holds each coefficient, a
-/// number or a polynomial in κ [rad], highest power first; or `file`, a file with such a table; or `material`. Beside a
-/// material stand `set`, one of its published sets by its number, and `radial_ratio` where that set has no radial
-/// coefficient; or rake_deg, chip_thickness_mm and the helix, which is helix_deg or the tool's, for its orthogonal
-/// tests. edge_per says what edge forces are per: "width" or "edge-length".
+/// `coefficients` of a TOML file, which is the name of a material or a table (coefficients_schema.hpp). A material's
+/// orthogonal tests take the tool's helix where the table gives none.
 /// @throws InvalidInput with file, line, key and value
 [[nodiscard]] CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut = {});
 

@@ -143,7 +143,7 @@ TEST(CoefficientsToml, AMaterialIsScaled) {
   const auto say = [&](const std::string& table) {
     return test::rejection([&] { static_cast<void>(whole_table_of(folder, table)); });
   };
-  EXPECT_NE(say("[coefficients]\nmaterial = \"7075-t6\"\nscale = 0\n").find("must be > 0 and at most 10"),
+  EXPECT_NE(say("[coefficients]\nmaterial = \"7075-t6\"\nscale = 0\n").find("must be > 0 and <= 10"),
             std::string::npos);
   EXPECT_NE(say("[coefficients]\ntangential_n_per_mm2 = 700\nscale = 2\n").find("must stand beside a material"),
             std::string::npos);
@@ -232,11 +232,16 @@ TEST(CoefficientsToml, RejectsAMaterialThatDoesNotServe) {
   expect("coefficients = 7075\n", "coefficients = 7075; must be text");
   expect(table + "\"1045\"\nradial_ratio = 0.4\n", "coefficients.chip_thickness_mm: is missing");
   expect(table + "\"1045\"\nradial_ratio = 0.4\nchip_thickness_mm = 0\n", "coefficients.chip_thickness_mm = 0");
-  expect(table + "\"1045\"\nradial_ratio = -0.1\n", "coefficients.radial_ratio = -0.1; must lie between 0 and 2");
+  expect(table + "\"1045\"\nradial_ratio = -0.1\n", "coefficients.radial_ratio = -0.1; must be >= 0 and <= 2");
   expect(table + "\"1045\"\nset = 2\n", "coefficients.set = 2; must lie between 1 and 1");
   expect(table + "\"7075-t6\"\nradial_ratio = 0.3\n", "coefficients.radial_ratio = 0.3; has no part");
   expect(table + "\"7075-t6\"\nchip_thickness_mm = 0.03\n", "chip_thickness_mm = 0.03 mm; has no part");
   expect(table + "\"7075-t6\"\nrake_deg = 5\nchip_thickness_mm = 0.03\n", "of 7075-t6 none are known");
+  expect(table + "\"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\nset = 1\n", "coefficients.set = 1; has no part");
+  expect(table + "\"7075-t6\"\nhelix_deg = 30\n", "coefficients.helix_deg = 30 deg; goes with rake_deg");
+  expect("[coefficients]\ntangential_n_per_mm2 = 700\nradial_ratio = 0.3\n",
+         "radial_ratio = 0.3; goes with a material");
+  expect("[coefficients]\ntangential_n_per_mm2 = \"700\"\n", "must be a finite number, or a list of them");
 }
 
 TEST(CoefficientsToml, RejectsInTheFilesWords) {

@@ -5,6 +5,7 @@
 namespace robomill::cutting {
 namespace {
 
+using io::declared;
 using io::Json;
 using io::key;
 using io::of;
@@ -17,9 +18,8 @@ constexpr Name<CutterKind> kinds[] = {{"flat-end", CutterKind::flat_end},
                                       {"general", CutterKind::general}};
 
 /// One helix angle, or one a tooth.
-Row<FlatEndMill> helix_key() {
-  Row<FlatEndMill> row =
-      key("helix_deg", &FlatEndMill::tooth_helix_rad, "helix angle of the edges; a list: one a tooth");
+Row<FlatEndMill> helix_row() {
+  Row<FlatEndMill> row = key(helix_key, &FlatEndMill::tooth_helix_rad, "helix angle of the edges; a list: one a tooth");
   row.key.or_one = true;
   row.member = "tooth_helix_rad";
   row.read = [](io::TomlFile& file, const std::string& path, const Row<FlatEndMill>& self, FlatEndMill& mill) {
@@ -42,9 +42,11 @@ const Schema<Cutter>& cutter_table() {
   static const Schema<Cutter> table(
       "tool", "the milling cutter",
       {key("kind", &Cutter::kind, kinds, "shape of the cutter"),
-       of(&Cutter::mill, key("teeth", &FlatEndMill::teeth, "cutting edges").at_least(1.0).at_most(100.0)),
-       of(&Cutter::mill, key("diameter_mm", &FlatEndMill::diameter_m, "over the cutting edges").above(0.0)),
-       of(&Cutter::mill, helix_key()),
+       of(&Cutter::mill,
+          key("teeth", &FlatEndMill::teeth, "cutting edges").at_least(1.0).at_most(100.0).slider(1.0, 20.0, 1.0)),
+       of(&Cutter::mill,
+          key("diameter_mm", &FlatEndMill::diameter_m, "over the cutting edges").above(0.0).slider(1.0, 50.0, 0.1)),
+       of(&Cutter::mill, helix_row().slider(0.0, 60.0, 1.0)),
        of(&Cutter::mill,
           key("pitch_deg", &FlatEndMill::pitch_rad, "from tooth to tooth, where the teeth are unequally spaced")),
        of(&Cutter::mill,
@@ -61,7 +63,8 @@ const Schema<Cutter>& cutter_table() {
        key("bottom_angle_deg", &Cutter::bottom_angle_rad,
            "general cutter: of the bottom above the plane that it stands on"),
        key("side_angle_deg", &Cutter::side_angle_rad,
-           "general cutter: of the side from the axis; above 0 it widens upwards")});
+           "general cutter: of the side from the axis; above 0 it widens upwards"),
+       declared<Cutter>("point_angle_deg", io::Holds::number, "of a drill, whose lips are the teeth; 118")});
   return table;
 }
 

@@ -4,6 +4,9 @@
 
 namespace robomill::cutting {
 
+/// The edges' angle: a key of [tool], and of [coefficients] where that takes another one.
+inline constexpr const char* helix_key = "helix_deg";
+
 /// [tool] of a milling cutter.
 [[nodiscard]] const io::Schema<Cutter>& cutter_table();
 /// [process_damping]

@@ -16,7 +16,7 @@ namespace robomill::io {
 [[nodiscard]] std::optional<std::string> setting_of(std::string_view document, std::string_view key);
 
 /// A document with one of its keys set, comments and layout as they were: the value that is there is replaced; a key
-/// that stands commented out ("# helix_deg = 30") takes effect; one that the document lacks goes to the end of its
+/// that stands commented out ("# teeth = 3") takes effect; one that the document lacks goes to the end of its
 /// table, which is made where it is missing.
 /// @param document  TOML
 /// @throws InvalidInput naming the key if the document or the value is no TOML, or the key cannot be set

@@ -174,7 +174,10 @@ bool TomlFile::numbers(std::string_view key, std::string_view member, double fac
     std::vector<double> values;
     const auto take = [&](const toml::node& entry) {
       const std::optional<double> number = finite_number(entry);
-      if (!number) throw reject(key, "must be a list of finite numbers");
+      if (!number) {
+        throw reject(
+            key, node->is_array() ? "must be a list of finite numbers" : "must be a finite number, or a list of them");
+      }
       values.push_back(*number * factor);
     };
     if (const toml::array* array = node->as_array()) {

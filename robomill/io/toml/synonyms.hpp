@@ -5,8 +5,8 @@
 
 namespace robomill::io {
 
-/// Whether people write `name` where this project has a key that ends in `last`: "flutes" for "teeth", "ae_mm" for
-/// "radial_depth_mm".
+/// Whether people write `name` where this project has a key that ends in `last`: "flutes" for "teeth", "fz" for
+/// "feed_per_tooth_mm".
 [[nodiscard]] bool is_written_for(std::string_view name, std::string_view last);
 
 /// What to write in place of an unknown key: "Here it is teeth", or with its table where that is another one; empty

@@ -22,16 +22,10 @@ constexpr std::string_view tables[] = {
 /// Of tables that several readers know a part of. A * ends the beginning of keys that one reader knows.
 constexpr std::string_view shared_keys[] = {
     // the cutter, its edges' length, and what it is to the robot
-    "tool.kind", "tool.teeth", "tool.diameter_mm", "tool.helix_deg", "tool.pitch_deg", "tool.runout_um",
-    "tool.runout_angle_deg", "tool.cutting_height_mm", "tool.corner_*", "tool.bottom_angle_deg", "tool.side_angle_deg",
-    "tool.point_angle_deg", "tool.max_axial_depth_mm", "tool.length_mm", "tool.mass_kg", "tool.center_mm",
-    "tool.number", "tool.load_number", "tool.name", "tool.mount_*",
-    // a chart's cut, a cut whose forces are asked for, a program's
-    "cut.kind", "cut.direction", "cut.radial_depth_mm", "cut.stepover_mm", "cut.axial_depth_mm", "cut.entry_deg",
-    "cut.exit_deg", "cut.feed_per_tooth_mm", "cut.feed_per_revolution_mm", "cut.feed_direction_deg",
-    "cut.spindle_speed_rpm", "cut.lead_deg", "cut.tilt_deg", "cut.surface_radius_*", "cut.force_on",
-    // a structure, or a posture of a cell
-    "dynamics.cell", "dynamics.joints_deg", "dynamics.axes", "dynamics.keep_modes",
+    "tool.kind", "tool.teeth", "tool.diameter_mm", "tool.helix_*", "tool.pitch_deg", "tool.runout_*",
+    "tool.cutting_height_mm", "tool.corner_*", "tool.bottom_angle_deg", "tool.side_angle_deg", "tool.point_angle_deg",
+    "tool.max_axial_depth_mm", "tool.length_mm", "tool.mass_kg", "tool.center_mm", "tool.number", "tool.load_number",
+    "tool.name", "tool.mount_*",
     // an arm, and how a cut of one revolution stands on it
     "robot.kind", "robot.model", "robot.urdf*", "robot.dh*", "robot.links*", "robot.joint_*", "robot.base_*",
     "robot.platform_*", "robot.start_joints_deg", "robot.gamma_deg", "robot.description", "robot.source", "robot.notes",

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "robomill/cutting/files/cutter_schema.hpp"
 #include "robomill/io/toml/file.hpp"
 
 namespace robomill::jobs {
@@ -24,6 +25,7 @@ class Defaults {
   void add_without(const char* key, const char* what, const char* taken) {
     if (!has(key)) add(what, taken, key);
   }
+  void add_helix() { add_without((std::string("tool.") + cutting::helix_key).c_str(), "Helix angle", "0°"); }
   [[nodiscard]] std::vector<Assumption> with(const std::vector<Assumption>& more) const {
     std::vector<Assumption> out = list_;
     add_assumed(out, more);
@@ -52,7 +54,7 @@ std::vector<Assumption> assumed_of(const LobesFile& file, CutUse use) {
     defaults.add_without("tool.point_angle_deg", "Point angle", "118°");
   } else {
     defaults.add_without("tool.kind", "Cutter", "flat end");
-    defaults.add_without("tool.helix_deg", "Helix angle", "0°");
+    defaults.add_helix();
     defaults.add_without("cut.feed_direction_deg", "Feed direction", "0°, along x of the structure");
     if (motion) defaults.add_without("tool.runout_um", "Runout", "0 µm");
   }
@@ -63,7 +65,7 @@ std::vector<Assumption> assumed_of(const LobesFile& file, CutUse use) {
 
 std::vector<Assumption> assumed_of(const process::ForcesFile& file, bool with_cell) {
   Defaults defaults(file.document, file.path);
-  defaults.add_without("tool.helix_deg", "Helix angle", "0°");
+  defaults.add_helix();
   defaults.add_without("tool.runout_um", "Runout", "0 µm");
   add_coefficients(defaults, true, true);
   if (!with_cell) defaults.add("Machine", "rigid, its deflection is left out", "robot.cell");

@@ -16,8 +16,8 @@
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/process/files/cut_fields.hpp"
 #include "robomill/process/files/decide_toml.hpp"
+#include "robomill/process/files/structure_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -29,11 +29,16 @@ void read_part(io::TomlFile& file, const char* key, bool held, const Job& job, s
 
 /// The structure of [dynamics], where the job names no other.
 void read_dynamics(io::TomlFile& file, Job& job) {
-  std::filesystem::path frf;
-  process::read_structure(file, "dynamics", job.modes, frf, job.own_modes);
-  if (!frf.empty()) job.frf.push_back(std::move(frf));
-  if (job.directions.equal || !job.directions.rigid.empty()) return;
-  job.directions = process::read_missing_directions(file, "dynamics", job.own_modes);
+  process::DynamicsTable table = process::read_dynamics(file);
+  if (!table.structure.own.modes.empty()) process::keep_named_directions(file, table.structure.own);
+  job.modes = std::move(table.structure.modes);
+  if (!table.structure.frf.empty()) job.frf.push_back(std::move(table.structure.frf));
+  job.own_modes = std::move(table.structure.own);
+  const auto says = [](const modal::MissingDirections& said) { return said.equal || !said.rigid.empty(); };
+  if (says(job.directions) && says(table.directions)) {
+    throw file.reject("dynamics", "and [job] both say what a direction is taken for", "Leave one of the two out");
+  }
+  if (says(table.directions)) job.directions = std::move(table.directions);
 }
 
 void read_sources(io::TomlFile& file, Job& job) {
@@ -62,8 +67,7 @@ void read_sources(io::TomlFile& file, Job& job) {
     job.band_low_hz = band[0];
     job.band_high_hz = band[1];
   }
-  modal::ModalModel none;
-  job.directions = process::read_missing_directions(file, "job", none);
+  process::missing_directions_table().read(file, "job", job.directions);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   if (!job.has_structure() && !job.lobes.empty()) read_dynamics(file, job);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +

@@ -14,7 +14,7 @@
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
-#include "robomill/process/files/cut_fields.hpp"
+#include "robomill/process/files/structure_schema.hpp"
 
 namespace robomill::jobs {
 namespace {

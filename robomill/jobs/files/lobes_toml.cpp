@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <memory>
 #include <numbers>
@@ -21,22 +21,29 @@
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/process/files/cut_fields.hpp"
+#include "robomill/process/files/structure_schema.hpp"
 #include "robomill/stability/files/chart_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-/// What a drill needs; its lips are the tool's teeth, and in the cut all round.
-void read_drilling(io::TomlFile& file, LobesFile& out) {
-  for (const char* key : {"tool.kind", "tool.corner_radius_mm", "tool.cutting_height_mm", "tool.pitch_deg",
-                          "tool.runout_um", "process_damping", "speed_variation", "lobes.sweep", "surface_error"}) {
-    if (file.has(key)) throw file.reject(key, "is no part of drilling");
+/// @throws InvalidInput at the first of the keys that is given
+void reject_any(const io::TomlFile& file, std::initializer_list<std::string> keys, const char* rule) {
+  for (const std::string& key : keys) {
+    if (file.has(key)) throw file.reject(key, rule);
   }
+}
+
+/// What a drill needs; its lips are the tool's teeth, and in the cut all round.
+void take_drilling(io::TomlFile& file, const cutting::CutTable& cut, LobesFile& out) {
+  reject_any(file,
+             {"tool.kind", "tool.corner_radius_mm", "tool.cutting_height_mm", "tool.pitch_deg", "tool.runout_um",
+              "process_damping", "speed_variation", "lobes.sweep", "surface_error", "dynamics.equal_directions",
+              "dynamics.rigid_directions"},
+             "is no part of drilling");
   file.number("tool.point_angle_deg", "point_angle_rad", units::deg, out.point_angle_rad);
   file.require("cut.feed_per_revolution_mm", "A drill feeds along its axis");
-  file.number("cut.feed_per_revolution_mm", "feed_per_revolution_m", units::mm, out.feed_per_revolution_m);
-  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  if (!(out.feed_per_revolution_m > 0.0)) throw file.reject("cut.feed_per_revolution_mm", "must be > 0");
+  out.feed_per_revolution_m = *cut.feed_per_revolution_m;
   out.radial_depth_m = out.problem.milling.tool.diameter_m;
   out.problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
 }
@@ -52,13 +59,10 @@ cutting::Drill drill_of(io::TomlFile& file, const LobesFile& out) {
   return drill;
 }
 
-/// Whether lobes.toml speaks of what the plane does not know: another cutter, a posture, forces along the axis.
-bool is_spatial(io::TomlFile& file, const cutting::Cutter& cutter, stability::SweptParameter sweep) {
-  double lead = 0.0;
-  double tilt = 0.0;
-  file.number("cut.lead_deg", "lead_rad", units::deg, lead);
-  file.number("cut.tilt_deg", "tilt_rad", units::deg, tilt);
-  return cutter.kind != cutting::CutterKind::flat_end || lead != 0.0 || tilt != 0.0 ||
+/// Whether the file asks for what the plane does not know: another cutter, a posture, forces along the axis.
+bool is_spatial(const io::TomlFile& file, const cutting::Cutter& cutter, const cutting::CutTable& cut,
+                stability::SweptParameter sweep) {
+  return cutter.kind != cutting::CutterKind::flat_end || cut.lead_rad != 0.0 || cut.tilt_rad != 0.0 ||
          sweep != stability::SweptParameter::axial_depth || file.has("coefficients.axial_n_per_mm2");
 }
 
@@ -75,41 +79,28 @@ cutting::CutAtHand cut_at_hand(const LobesFile& cut, cutting::CutterKind kind) {
   return out;
 }
 
-/// What is left of the file's cut for a cutter in three directions.
-void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& out, cutting::CoefficientTable& table) {
-  for (const char* key : {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation"}) {
-    if (file.has(key)) throw file.reject(key, "is for an upright flat end in x and y");
-  }
-  if (file.has("surface_error") && out.sweep != stability::SweptParameter::axial_depth) {
+/// The cut of a cutter in three directions.
+void take_spatial(io::TomlFile& file, const cutting::Cutter& cutter, const cutting::CutTable& cut, LobesFile& out) {
+  using stability::SweptParameter;
+  reject_any(file, {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation"},
+             "is for an upright flat end in x and y");
+  if (file.has("surface_error") && out.sweep != SweptParameter::axial_depth) {
     throw file.reject("surface_error", "goes with a chart over the axial depth");
+  }
+  process::require_engagement(file, cut, cutter.mill, cutter.kind, "\"up\", \"down\" or \"slot\"");
+  const bool slot = cut.direction == cutting::MillingDirection::slot;
+  if (slot && out.sweep == SweptParameter::radial_depth) {
+    throw file.reject("lobes.sweep", "must not be the step-over of a slot, which has no neighbour");
+  }
+  if (!cut.axial_depth_m && out.sweep != SweptParameter::axial_depth) {
+    file.require("cut.axial_depth_mm", "The chart varies something else");
   }
   stability::SpatialMilling milling;
   milling.cutter = cutter;
-  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
-  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  file.number("cut.lead_deg", "lead_rad", units::deg, milling.cut.lead_rad);
-  file.number("cut.tilt_deg", "tilt_rad", units::deg, milling.cut.tilt_rad);
-  if (!process::read_direction(file, milling.cut.direction))
-    file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
-  const bool slot = milling.cut.direction == cutting::MillingDirection::slot;
-  if (slot && out.sweep == stability::SweptParameter::radial_depth) {
-    throw file.reject("lobes.sweep", "must not be the step-over of a slot, which has no neighbour");
-  }
-  const bool radial = process::read_radial_depth(file, milling.cut.radial_depth_m);
-  if (!radial && !slot) file.require("cut.radial_depth_mm");
-  process::require_full_width(file, milling.cut.direction, milling.cut.radial_depth_m, cutter.mill, cutter.kind);
-  const bool depth = file.number("cut.axial_depth_mm", "cut.axial_depth_m", units::mm, milling.cut.axial_depth_m);
-  if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
-    file.require("cut.axial_depth_mm", "The chart varies something else");
-  }
-  out.problem.milling.feed_per_tooth_m = milling.feed_per_tooth_m;
-  table = cutting::read_coefficient_table(file, cut_at_hand(out, cutter.kind));
-  milling.coefficients = table.coefficients;
-  if (!file.has("dynamics.cell")) {
-    file.choice<bool>("dynamics.axes", {{"feed", false}, {"tool", true}}, milling.modes_turn_with_tool);
-  }
-  out.problem.milling.tool = cutter.mill;
-  out.direction = milling.cut.direction;
+  milling.feed_per_tooth_m = cut.feed_per_tooth_m;
+  milling.cut = cut.milled();
+  milling.cut.curvature_along_feed_per_m = milling.cut.curvature_across_feed_per_m = 0.0;  // a chart's surface is plane
+  out.direction = cut.direction;
   out.radial_depth_m = slot ? cutter.mill.diameter_m : milling.cut.radial_depth_m;
   out.problem.spatial = milling;
 }
@@ -148,28 +139,20 @@ void check_spatial(io::TomlFile& file, LobesFile& out) {
   }
 }
 
-void read_cut(io::TomlFile& file, LobesFile& out) {
+/// The cut of an upright flat end, whose angles the file gives, or direction and radial depth.
+void take_plane(const io::TomlFile& file, const cutting::CutTable& cut, LobesFile& out) {
   cutting::Milling& milling = out.problem.milling;
-  if (out.drilling) {
-    read_drilling(file, out);
-    return;
-  }
-  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
-  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  const bool radial = process::read_radial_depth(file, out.radial_depth_m);
-  const bool entry = file.number("cut.entry_deg", "entry_rad", units::deg, milling.immersion.entry_rad);
-  const bool exit = file.number("cut.exit_deg", "exit_rad", units::deg, milling.immersion.exit_rad);
-  cutting::MillingDirection direction = cutting::MillingDirection::up;
-  const bool named = process::read_direction(file, direction);
-  if (milling.feed_per_tooth_m < 0.0) throw file.reject("cut.feed_per_tooth_mm", "must be >= 0");
-  if (named && (entry || exit)) throw file.reject("cut.direction", "must not stand beside entry_deg and exit_deg");
-  if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
   const double diameter_m = milling.tool.diameter_m;
+  const bool entry = cut.entry_rad.has_value(), exit = cut.exit_rad.has_value();
+  if (cut.direction && (entry || exit)) {
+    throw file.reject("cut.direction", "must not stand beside entry_deg and exit_deg");
+  }
+  if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
   if (entry) {
+    milling.immersion = {.entry_rad = *cut.entry_rad, .exit_rad = *cut.exit_rad};
     file.locate([&] { milling.immersion.validate(); });
-    const double said_m = out.radial_depth_m;
     out.radial_depth_m = cutting::radial_depth(milling.immersion, diameter_m);
-    if (radial && std::abs(said_m - out.radial_depth_m) > 0.01 * diameter_m) {
+    if (cut.radial_depth_m && std::abs(*cut.radial_depth_m - out.radial_depth_m) > 0.01 * diameter_m) {
       throw file.reject("cut.entry_deg",
                         fmt::format("contradicts the radial depth: to cut from entry to exit angle is {:.4g} mm deep",
                                     out.radial_depth_m / units::mm),
@@ -177,15 +160,11 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
     }
     return;
   }
-  if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
-  out.direction = direction;
-  if (direction == cutting::MillingDirection::slot) {
-    if (!radial) out.radial_depth_m = diameter_m;
-  } else if (!radial) {
-    file.require("cut.radial_depth_mm");
-  }
-  process::require_full_width(file, direction, out.radial_depth_m, milling.tool);
-  file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
+  process::require_engagement(file, cut, milling.tool, cutting::CutterKind::flat_end,
+                              "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
+  out.direction = cut.direction;
+  out.radial_depth_m = cut.radial_depth_m.value_or(diameter_m);
+  file.locate([&] { milling.immersion = cutting::immersion(*cut.direction, out.radial_depth_m, diameter_m); });
 }
 
 /// What a file or a material says of the side of a cutter, κ = 90°, each per width.
@@ -203,24 +182,18 @@ cutting::ForceCoefficients of_the_side(const cutting::MillingCoefficients& k, do
 
 void read_coefficients_of(io::TomlFile& file, LobesFile& out, cutting::CoefficientTable& table) {
   cutting::ForceCoefficients& k = out.problem.milling.coefficients;
-  const char* named = file.has("coefficients.file") ? "coefficients.file" : "coefficients.material";
-  if (cutting::names_a_material(file)) named = "coefficients";
-  if (file.has(named)) {
-    table = cutting::read_coefficient_table(file, cut_at_hand(out, cutting::CutterKind::flat_end));
-    k = of_the_side(table.coefficients, out.problem.milling.tool.helix_rad);
-    try {
-      k.validate();
-    } catch (const InvalidInput& error) {
-      throw file.reject(named, "gives a coefficient that cannot be used: " + std::string(error.what()));
-    }
-    return;
+  table = cutting::read_coefficient_table(file, cut_at_hand(out, cutting::CutterKind::flat_end));
+  k = of_the_side(table.coefficients, out.problem.milling.tool.helix_rad);
+  const char* const named = cutting::names_a_material(file)     ? "coefficients"
+                            : file.has("coefficients.file")     ? "coefficients.file"
+                            : file.has("coefficients.material") ? "coefficients.material"
+                                                                : nullptr;
+  if (named == nullptr) return file.locate([&] { k.validate(); });
+  try {
+    k.validate();
+  } catch (const InvalidInput& error) {
+    throw file.reject(named, "gives a coefficient that cannot be used: " + std::string(error.what()));
   }
-  file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, k.tangential_n_per_m2);
-  file.number("coefficients.radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, k.radial_n_per_m2);
-  file.number("coefficients.tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
-              k.tangential_edge_n_per_m);
-  file.number("coefficients.radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, k.radial_edge_n_per_m);
-  file.locate([&] { k.validate(); });
 }
 
 /// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
@@ -232,40 +205,26 @@ void read_forces(io::TomlFile& file, LobesFile& out, cutting::CoefficientTable& 
   file.locate([&] { milling.validate(); });
 }
 
-void read_pair(io::TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
-  std::vector<double> values;
-  if (!file.numbers(key, member, factor, values)) return;
-  if (values.size() != 2) throw file.reject(key, "must be [from, to]");
-  out = {values[0], values[1]};
-}
-
-/// What a chart varies beside the speed, and the key of its range.
-struct SweptKey {
-  stability::SweptParameter parameter;
-  const char* key;
-  double factor;
-};
-constexpr SweptKey swept_keys[] = {{stability::SweptParameter::radial_depth, "lobes.radial_depth_mm", units::mm},
-                                   {stability::SweptParameter::lead, "lobes.lead_deg", units::deg},
-                                   {stability::SweptParameter::tilt, "lobes.tilt_deg", units::deg}};
-
-void read_chart(io::TomlFile& file, LobesFile& out) {
+/// The chart's range and grid, beside a cut that is known.
+void check_chart(const io::TomlFile& file, const stability::ChartTable& chart, LobesFile& out) {
+  using stability::SweptParameter;
   stability::LobesOptions& options = out.options;
   file.require("lobes.spindle_speed_rpm", "[from, to]");
-  const auto* const swept = std::ranges::find(swept_keys, out.sweep, &SweptKey::parameter);
-  if (swept == std::end(swept_keys)) {
-    file.require("lobes.axial_depth_mm", "[from, to]");
-    stability::chart_options_table().read(file, "lobes", options);
-    file.locate([&] { options.validate(); });
-    return;
+  const std::string swept = "lobes." + stability::swept_key(chart.sweep);
+  for (const auto& [name, parameter] : stability::swept_names) {
+    const std::string key = "lobes." + stability::swept_key(parameter);
+    if (parameter == chart.sweep || parameter == SweptParameter::axial_depth || !file.has(key)) continue;
+    throw file.reject(key, fmt::format("goes with sweep = \"{}\"", name), "What the cut has stands in [cut]");
   }
-  file.require(swept->key, "[from, to], what the chart varies");
-  for (const char* key : {"lobes.method", "lobes.intervals", "lobes.output", "uncertainty", "lobes.axial_depth_mm"}) {
-    if (file.has(key)) throw file.reject(key, "does not go with a sweep of another parameter than the axial depth");
+  if (chart.sweep == SweptParameter::axial_depth) {
+    file.require(swept, "[from, to]");
+    return file.locate([&] { options.validate(); });
   }
-  read_pair(file, swept->key, "range", swept->factor, out.sweep_range);
-  options.grid = {60, 40};
-  stability::chart_options_table().read(file, "lobes", options);
+  file.require(swept, "[from, to], what the chart varies");
+  reject_any(file, {"lobes.method", "lobes.intervals", "lobes.output", "uncertainty", "lobes.axial_depth_mm"},
+             "does not go with a sweep of another parameter than the axial depth");
+  out.sweep_range = *chart.range_of(chart.sweep);
+  if (!file.has("lobes.grid")) options.grid = {60, 40};
   options.axial_depth_m = {0.0, std::max(out.problem.spatial->cut.axial_depth_m, 1e-6)};  // does not count
   file.locate([&] {
     options.validate();
@@ -302,17 +261,30 @@ void take_material(const io::TomlFile& file, const cutting::CoefficientTable& ta
       table.std_of, 100.0 * table.std_ratio);
 }
 
-/// A cell, and where its robot stands.
-void read_posture(io::TomlFile& file, LobesFile& out) {
-  const bool cell = file.path("dynamics.cell", out.cell);
-  const bool joints = file.numbers("dynamics.joints_deg", "joints", units::deg, out.joints);
-  if (cell && !joints) file.require("dynamics.joints_deg", "The posture: one value a joint");
-  if (joints && !cell) file.require("dynamics.cell", "Whose joints?");
-  if (!cell) return;
-  file.choice("dynamics.axes", cell::posture_axes_names, out.posture_axes);
-  if (!out.modes.empty() || !out.frf.empty() || !out.problem.dynamics.modes.empty()) {
-    throw file.reject("dynamics.cell", "must not stand beside modes, frf, x, y or z");
+/// What vibrates.
+void read_structures(io::TomlFile& file, LobesFile& out) {
+  process::DynamicsTable tool = process::read_dynamics(file);
+  if (!out.drilling && !tool.structure.own.modes.empty()) process::keep_named_directions(file, tool.structure.own);
+  out.modes = std::move(tool.structure.modes);
+  out.frf = std::move(tool.structure.frf);
+  out.problem.dynamics = std::move(tool.structure.own);
+  out.cell = std::move(tool.cell);
+  out.joints = std::move(tool.joints);
+  if (tool.axes == process::StructureAxes::flange) out.posture_axes = cell::PostureAxes::flange;
+  out.directions = std::move(tool.directions);
+  out.problem.keep_modes = std::move(tool.keep_modes);
+  process::StructureTable part = process::read_workpiece_dynamics(file);
+  const bool vibrates = !part.modes.empty() || !part.own.modes.empty();
+  if (out.problem.spatial) {
+    out.problem.spatial->modes_turn_with_tool = tool.axes == process::StructureAxes::tool;
+    if (vibrates && out.problem.spatial->modes_turn_with_tool) {
+      throw file.reject("dynamics.axes",
+                        "must be \"feed\" beside workpiece_dynamics: a part does not lean with the tool");
+    }
   }
+  out.workpiece_modes = std::move(part.modes);
+  out.workpiece_frf = std::move(part.frf);
+  out.problem.workpiece_dynamics = std::move(part.own);
 }
 
 /// What a job measures, predicts or takes the structure from.
@@ -327,35 +299,33 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   if (!file.has("job") && (file.has("spindle.max_speed_rpm") || file.has("spindle.min_speed_rpm"))) {
     out.notes.emplace_back("[spindle] takes no part in a chart without [job]: lobes.spindle_speed_rpm is its range.");
   }
+  // First: an error about a speed or a depth that [cut] has too is then the chart's.
+  stability::ChartTable chart;
+  stability::chart_options_table().read(file, "lobes", chart);
+  out.options = chart.options;
+  out.sweep = chart.sweep;
   cutting::Cutter cutter;
   process::read_cutter(file, cutter);
   out.problem.milling.tool = cutter.mill;
-  file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
-  file.choice("lobes.sweep", stability::swept_names, out.sweep);
-  const bool spatial = !out.drilling && is_spatial(file, cutter, out.sweep);
+  cutting::CutTable cut;
+  cutting::cut_table().read(file, "cut", cut);
+  out.drilling = cut.drilling;
+  out.problem.feed_direction_rad = cut.feed_direction_rad;
+  if (!out.drilling) out.problem.milling.feed_per_tooth_m = cut.feed_per_tooth_m;
+  const bool spatial = !out.drilling && is_spatial(file, cutter, cut, out.sweep);
   cutting::CoefficientTable table;
   if (spatial) {
-    read_spatial(file, cutter, out, table);
+    take_spatial(file, cutter, cut, out);
+    table = cutting::read_coefficient_table(file, cut_at_hand(out, cutter.kind));
+    out.problem.spatial->coefficients = table.coefficients;
   } else {
-    read_cut(file, out);
+    out.drilling ? take_drilling(file, cut, out) : take_plane(file, cut, out);
     read_forces(file, out, table);
   }
   if (out.drilling) out.problem.drilling = drill_of(file, out);
-  process::read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
-  read_posture(file, out);
-  if (!out.drilling) out.directions = process::read_missing_directions(file, "dynamics", out.problem.dynamics);
-  file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
-  process::read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf,
-                          out.problem.workpiece_dynamics);
-  read_chart(file, out);
-  if (spatial) {
-    const bool part = !out.workpiece_modes.empty() || !out.problem.workpiece_dynamics.modes.empty();
-    if (part && out.problem.spatial->modes_turn_with_tool) {
-      throw file.reject("dynamics.axes",
-                        "must be \"feed\" beside workpiece_dynamics: a part does not lean with the tool");
-    }
-    check_spatial(file, out);
-  }
+  read_structures(file, out);
+  check_chart(file, chart, out);
+  if (spatial) check_spatial(file, out);
   const double edges_m = cutter.cutting_height_m;
   if (!spatial && file.has("tool.cutting_height_mm") && out.options.axial_depth_m[1] > edges_m * (1.0 + 1e-9)) {
     throw file.reject("lobes.axial_depth_mm",
@@ -369,13 +339,10 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   read_uncertainty(file, out.uncertainty);
   take_material(file, table, cutter.kind, out);
   if (file.has("surface_error")) {
-    std::vector<int> grid = {60, 60};
-    file.integers("surface_error.grid", "grid", grid);
-    if (grid.size() != 2) throw file.reject("surface_error.grid", "must be [speeds, depths]");
-    if (grid[0] < 2 || grid[1] < 2)
-      throw file.reject("surface_error.grid", "must have at least 2 points in each direction");
+    stability::SurfaceErrorTable surface;
+    stability::surface_error_table().read(file, "surface_error", surface);
     if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
-    out.surface_grid = {grid[0], grid[1]};
+    out.surface_grid = surface.grid;
   }
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   return out;

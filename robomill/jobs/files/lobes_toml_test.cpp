@@ -367,7 +367,7 @@ grid = [20, 10]
   rejected("[speed_variation]\namplitude_ratio = 0.1\n", "frequency_ratio");
   rejected("[uncertainty]\nsamples = 3\n", "uncertainty.samples = 3; must be >= 20 and <= 1e+06");
   rejected("[uncertainty]\ndamping_std_ratio = 10\n", "It is a share of the value, not a percentage");
-  rejected("[surface_error]\ngrid = [1, 2]\n", "must have at least 2 points");
+  rejected("[surface_error]\ngrid = [1, 2]\n", "surface_error.grid[1] = 1; must be >= 2");
   rejected("[workpiece_dynamics]\nmass_kg = 2\n", "workpiece_dynamics.mass_kg");
 }
 
@@ -495,6 +495,38 @@ TEST(LobesToml, RejectsWhatItsOwnKeysContradict) {
       static_cast<void>(read_lobes(folder.file("lobes.toml", with("teeth = 2", "teeth = 2\ncutting_height_mm = 30")))));
 }
 
+// A flat end cuts with its side, κ = 90 degrees; what [cut] and [coefficients] have for forces takes no part in a
+// chart.
+TEST(LobesToml, TakesTheTablesOfForces) {
+  const test::Folder folder;
+  const auto read = [&](const std::string& old_text, const std::string& new_text) {
+    return read_lobes(folder.file("lobes.toml", with(old_text, new_text)));
+  };
+  const LobesFile polynomial = read("tangential_n_per_mm2 = 600", "tangential_n_per_mm2 = [100, 600]");
+  EXPECT_NEAR(polynomial.problem.milling.coefficients.tangential_n_per_m2, (600 + 50 * std::numbers::pi) * 1e6, 1.0);
+  const LobesFile file = read("radial_n_per_mm2 = 200",
+                              "radial_n_per_mm2 = 200\naxial_edge_n_per_mm = 3\ntangential_edge_n_per_mm = 20\n"
+                              "edge_per = \"edge-length\"");
+  EXPECT_FALSE(file.problem.spatial);
+  EXPECT_NEAR(file.problem.milling.coefficients.tangential_edge_n_per_m, 20e3 / std::cos(30 * units::deg), 1e-6);
+  const LobesFile cut = read("feed_direction_deg = 90",
+                             "feed_direction_deg = 90\naxial_depth_mm = 2\nspindle_speed_rpm = 9000\n"
+                             "force_on = \"workpiece\"\nsurface_radius_along_feed_mm = -50");
+  EXPECT_DOUBLE_EQ(cut.problem.milling.immersion.exit_rad,
+                   read_lobes(folder.file("l.toml", good)).problem.milling.immersion.exit_rad);
+  const auto say = [&](const std::string& old_text, const std::string& new_text) {
+    return test::rejection([&] { static_cast<void>(read(old_text, new_text)); });
+  };
+  EXPECT_NE(
+      say("[coefficients]", "axial_depth_mm = -2\n[coefficients]").find("lobes.toml:10: cut.axial_depth_mm = -2 mm"),
+      std::string::npos);
+  EXPECT_NE(say("[lobes]", "[lobes]\nlead_deg = [0, 5]").find("lobes.lead_deg: goes with sweep = \"lead\""),
+            std::string::npos)
+      << say("[lobes]", "[lobes]\nlead_deg = [0, 5]");
+  EXPECT_NE(say("[dynamics]", "[dynamics]\naxes = \"flange\"").find("must be \"feed\" or \"tool\""), std::string::npos);
+  EXPECT_NE(say("[dynamics]", "[dynamics]\naxis = \"feed\"").find("Did you mean dynamics.axes?"), std::string::npos);
+}
+
 // A table of another reader takes no part, and the file says so where it looks as if it did.
 TEST(LobesToml, SaysThatASpindleNeedsAJob) {
   const test::Folder folder;
@@ -515,9 +547,9 @@ TEST(LobesToml, AnswersSynonymsWithTheRightKey) {
       {"radial_depth_mm = 1.2", "ae_mm = 1.2", "cut.ae_mm: is not known here. Here it is radial_depth_mm"},
       {"feed_per_tooth_mm", "fz", "cut.fz: is not known here. Here it is feed_per_tooth_mm"},
       {"axial_depth_mm = [0, 5]", "ap = [0, 5]", "lobes.ap: is not known here. Here it is axial_depth_mm"},
-      {"[coefficients]", "ap_mm = 2\n[coefficients]", "cut.ap_mm: is not known here. Here it is lobes.axial_depth_mm"},
+      {"[coefficients]", "ap_mm = 2\n[coefficients]", "cut.ap_mm: is not known here. Here it is axial_depth_mm"},
       {"[coefficients]", "vc = 200\n[coefficients]",
-       "cut.vc: is not known here. Here it is lobes.spindle_speed_rpm = 1000 vc / (pi diameter_mm)"},
+       "cut.vc: is not known here. Here it is spindle_speed_rpm = 1000 vc / (pi diameter_mm)"},
       {"\"down\"", "\"Climb\"", "must be one of \"up\", \"down\", \"slot\". Climb milling is \"down\" here"},
       {"\"down\"", "\"conventional\"", "Conventional milling is \"up\" here"},
       {"direction = \"down\"", "climb = true", "cut.climb: is not known here. Here it is direction = \"down\""}};

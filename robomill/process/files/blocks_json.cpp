@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/files/cut_schema.hpp"
 #include "robomill/io/columns.hpp"
 #include "robomill/process/blocks/named_block.hpp"
 #include "robomill/process/vibration_text.hpp"
@@ -130,7 +131,8 @@ std::vector<Row<BlockLine>> block_stability_keys() {
           "axial_depth_mm", [](const BlockLine& at) { return at.row->axial_depth_m; },
           "of the engaged part along the tool's axis, where most of the cutter is in the material"),
       key(
-          "radial_depth_mm", [](const BlockLine& at) { return at.row->radial_depth_m; }, "the same across the feed"),
+          cutting::radial_depth_key, [](const BlockLine& at) { return at.row->radial_depth_m; },
+          "the same across the feed"),
       key(
           "spindle_speed_rpm", [](const BlockLine& at) { return at.row->spindle_speed_rad_per_s; }, "spindle speed"),
       key(

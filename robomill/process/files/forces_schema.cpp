@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/files/cut_schema.hpp"
 #include "robomill/process/files/revolution_schema.hpp"
 #include "robomill/program/files/skipped_schema.hpp"
 
@@ -72,7 +73,7 @@ std::vector<Row<ForcesLine>> load_keys() {
   using cutting::BlockForce;
   std::vector<Row<ForcesLine>> rows = {
       of_force(key("axial_depth_mm", &BlockForce::axial_depth_m, "greatest, along the tool's axis")),
-      of_force(key("radial_depth_mm", &BlockForce::radial_depth_m, "greatest, across the feed"))};
+      of_force(key(cutting::radial_depth_key, &BlockForce::radial_depth_m, "greatest, across the feed"))};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     rows.push_back(key(
         fmt::format("mean_f{}_n", "xyz"[axis]),

@@ -24,6 +24,10 @@ struct ForcesLine {
 [[nodiscard]] std::vector<ForcesLine> lines_of(const ForcesResult& forces);
 /// forces.csv along a program.
 [[nodiscard]] const io::Columns<ForcesLine>& forces_columns();
+/// [forces]
+[[nodiscard]] const io::Schema<Cut>& forces_options_table();
+/// [robot] of a single cut, beside the keys of an arm.
+[[nodiscard]] const io::Schema<Cut>& robot_of_cut_table();
 /// forces.json
 [[nodiscard]] const io::Schema<ForcesResult>& forces_table();
 

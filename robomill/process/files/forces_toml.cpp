@@ -13,44 +13,34 @@
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/process/files/cut_fields.hpp"
+#include "robomill/process/files/forces_schema.hpp"
+#include "robomill/process/files/structure_schema.hpp"
 
 namespace robomill::process {
 namespace {
 
-/// The radius of a curved surface, > 0 where it is convex, to its curvature.
-void read_radius(io::TomlFile& file, const char* key, double& curvature_per_m) {
-  double radius_m = 0.0;
-  if (!file.number(key, "surface_radius_m", units::mm, radius_m)) return;
-  if (radius_m == 0.0) throw file.reject(key, "must not be 0", "> 0 is convex, < 0 concave; a plane has none");
-  curvature_per_m = 1.0 / radius_m;
+using io::key;
+
+io::Row<Cut> feed_direction_row() {
+  io::Row<Cut> row = key("feed_direction", &Cut::feed_direction, "[x, y, z] of the feed in the work frame");
+  row.key.rule.entries = 3;
+  row.read = [](io::TomlFile& file, const std::string& path, const io::Row<Cut>& self, Cut& out) {
+    std::vector<double> direction;
+    if (!file.numbers(path, self.member, 1.0, direction)) return;
+    if (direction.size() != 3) throw file.reject(path, "must be [x, y, z] in the work frame");
+    out.feed_direction = {direction[0], direction[1], direction[2]};
+    if (!(out.feed_direction.norm() > 0.0)) throw file.reject(path, "must not be zero");
+    out.feed_direction.normalize();
+  };
+  return row;
 }
 
-void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
-  const bool alone = job == ForcesJob::revolution;
-  file.number("cut.axial_depth_mm", "axial_depth_m", units::mm, out.cut.axial_depth_m);
-  const bool radial = read_radial_depth(file, out.cut.radial_depth_m);
-  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, out.motion.feed_per_tooth_m);
-  const bool turning =
-      file.number("cut.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, out.motion.spindle_speed_rad_per_s);
-  const bool named = read_direction(file, out.cut.direction);
-  file.number("cut.lead_deg", "lead_rad", units::deg, out.cut.lead_rad);
-  file.number("cut.tilt_deg", "tilt_rad", units::deg, out.cut.tilt_rad);
-  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.feed_direction_rad);
-  read_radius(file, "cut.surface_radius_along_feed_mm", out.cut.curvature_along_feed_per_m);
-  read_radius(file, "cut.surface_radius_across_feed_mm", out.cut.curvature_across_feed_per_m);
-  std::string on = "tool";
-  file.text("force_on", on);
-  file.text("cut.force_on", on);
-  if (on != "tool" && on != "workpiece") throw file.reject("force_on", "must be \"tool\" or \"workpiece\"");
-  out.on_workpiece = on == "workpiece";
-  if (turning && !(out.motion.spindle_speed_rad_per_s > 0.0)) throw file.reject("cut.spindle_speed_rpm", "must be > 0");
-  if (!alone) return;
+/// What the file says of a single cut, checked.
+void check_cut(const io::TomlFile& file, const cutting::CutTable& cut, const ForcesFile& out) {
   file.require("cut.axial_depth_mm");
   file.require("cut.feed_per_tooth_mm");
   file.require("cut.spindle_speed_rpm");
-  if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
-  if (!radial && out.cut.direction != cutting::MillingDirection::slot) file.require("cut.radial_depth_mm");
-  require_full_width(file, out.cut.direction, out.cut.radial_depth_m, out.cutter.mill, out.cutter.kind);
+  require_engagement(file, cut, out.cutter.mill, out.cutter.kind, "\"up\", \"down\" or \"slot\"");
   try {
     file.locate([&] {
       out.cut.validate(out.cutter);
@@ -67,6 +57,18 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   }
 }
 
+void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
+  cutting::CutTable cut;
+  file.choice("force_on", cutting::force_on_names, cut.force_on_workpiece);
+  cutting::cut_table().read(file, "cut", cut);
+  out.cut = cut.milled();
+  out.motion = {.feed_per_tooth_m = cut.feed_per_tooth_m,
+                .spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s.value_or(0.0)};
+  out.feed_direction_rad = cut.feed_direction_rad;
+  out.on_workpiece = cut.force_on_workpiece;
+  if (job == ForcesJob::revolution) check_cut(file, cut, out);
+}
+
 /// @param document  whose [robot] may be the arm itself
 void read_robot(io::TomlFile& file, const std::filesystem::path& document, ForcesJob job, ForcesFile& out) {
   const bool alone = job == ForcesJob::revolution;
@@ -77,78 +79,24 @@ void read_robot(io::TomlFile& file, const std::filesystem::path& document, Force
   if (!file.path("robot.cell", out.cell) && has_cell) {
     out.cell = file.has("job.cell") ? file.file_of_part("job.cell", "robot") : document;
   }
-  file.numbers("robot.joints_deg", "joints_rad", units::deg, out.joints_rad);
-  std::vector<double> direction;
-  if (file.numbers("robot.feed_direction", "feed_direction", 1.0, direction)) {
-    if (direction.size() != 3) throw file.reject("robot.feed_direction", "must be [x, y, z] in the work frame");
-    out.feed_direction = {direction[0], direction[1], direction[2]};
-    if (!(out.feed_direction.norm() > 0.0)) throw file.reject("robot.feed_direction", "must not be zero");
-    out.feed_direction.normalize();
-  }
-  file.boolean("robot.vibration", out.robot_vibrates);
+  robot_of_cut_table().read(file, "robot", out);
   if (!alone) return;
   if (!has_cell) file.require("robot.cell", "The file that describes the robot");
   file.require("robot.joints_deg", "The posture in which it cuts");
 }
 
-template <class Vector>
-void read_point(io::TomlFile& file, const std::string& key, const std::string& member, Vector& out) {
-  std::vector<double> values;
-  file.require(key);
-  file.numbers(key, member, units::mm, values);
-  if (values.size() != static_cast<std::size_t>(out.size())) {
-    throw file.reject(key, out.size() == 3 ? "must be [x, y, z]" : "must be [x, y]");
-  }
-  out = Eigen::Map<const Vector>(values.data());
-}
-
-/// The axis of a round stock, x and y; 0, 0 where it is absent.
-void read_round(io::TomlFile& file, cutting::Stock& stock) {
-  if (file.has("stock.center_mm")) read_point(file, "stock.center_mm", "center_m", stock.center_m);
-  if (stock.shape == cutting::Stock::Shape::cylinder) {
-    for (const char* key : {"stock.radius_mm", "stock.bottom_mm", "stock.top_mm"}) file.require(key);
-    file.number("stock.radius_mm", "radius_m", units::mm, stock.radius_m);
-    file.number("stock.bottom_mm", "bottom_m", units::mm, stock.bottom_m);
-    file.number("stock.top_mm", "top_m", units::mm, stock.top_m);
-    return;
-  }
-  std::vector<double> radius, height;
-  file.require("stock.outline_radius_mm", "Radii of the outline, from below to above");
-  file.require("stock.outline_z_mm", "Their heights");
-  file.numbers("stock.outline_radius_mm", "outline_m", units::mm, radius);
-  file.numbers("stock.outline_z_mm", "outline_m", units::mm, height);
-  if (radius.size() != height.size()) throw file.reject("stock.outline_z_mm", "must have a height for each radius");
-  stock.outline_m.reserve(radius.size());
-  for (std::size_t i = 0; i < radius.size(); ++i) stock.outline_m.emplace_back(radius[i], height[i]);
-}
-
 void read_stock(io::TomlFile& file, ForcesFile& out) {
-  using Shape = cutting::Stock::Shape;
-  file.number("stock.dexel_mm", "dexel_m", units::mm, out.dexel_m);
-  if (!(out.dexel_m > 0.0)) throw file.reject("stock.dexel_mm", "must be > 0");
-  std::string kind;
-  if (file.text("stock.kind", kind) && kind == "neighbours") {
-    out.neighbours = true;
+  cutting::StockTable stock;
+  cutting::stock_table().read(file, "stock", stock);
+  out.dexel_m = stock.dexel_m;
+  out.neighbours = stock.kind == cutting::StockKind::neighbours;
+  if (out.neighbours) {
     file.require("cut.axial_depth_mm", "How deep every block cuts beside its neighbour");
-    if (!(out.cut.axial_depth_m > 0.0)) throw file.reject("cut.axial_depth_mm", "must be > 0");
     if (out.cutter.kind != cutting::CutterKind::ball_end) {
       throw file.reject("tool.kind", "must be \"ball-end\" where there is no stock");
     }
-    return;
   }
-  cutting::Stock stock;
-  if (!file.choice<Shape>("stock.kind", {{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"turned", Shape::turned}},
-                          stock.shape)) {
-    return;
-  }
-  if (stock.shape == Shape::box) {
-    read_point(file, "stock.min_mm", "min_m", stock.min_m);
-    read_point(file, "stock.max_mm", "max_m", stock.max_m);
-  } else {
-    read_round(file, stock);
-  }
-  file.locate([&] { stock.validate(); });
-  out.stock = stock;
+  out.stock = cutting::stock_of(file, stock);
 }
 
 /// A material's are those at the cut's mean chip, which depth and direction tell of an upright flat end alone.
@@ -174,6 +122,13 @@ void read_coefficients(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   add_unusual(cut, out.notes);
 }
 
+/// Of a structure that must be given by modes.
+modal::ModalModel modes_of(const io::TomlFile& file, const std::string& table, const StructureTable& structure,
+                           std::vector<std::string>& notes) {
+  if (!structure.frf.empty()) throw file.reject(table + ".frf", "must be modes here", "Fit them: robomill modes");
+  return structure.modes.empty() ? structure.own : modal::read_modes(structure.modes, notes);
+}
+
 ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob job) {
   ForcesFile out;
   out.path = file.file_of_part("job.forces", "cut");
@@ -183,10 +138,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   read_cut(file, job, out);
   read_coefficients(file, job, out);
   read_stock(file, out);
-  file.integer("forces.steps", "steps", out.force.steps);
-  file.integer("forces.slices", "slices", out.slices);
-  file.number("forces.power_time_s", "power_time_s", 1.0, out.power_time_s);
-  if (!(out.power_time_s > 0.0)) throw file.reject("forces.power_time_s", "must be > 0");
+  forces_options_table().read(file, "forces", out);
   file.locate([&] {
     out.force.validate();
     if (job == ForcesJob::program) {
@@ -207,25 +159,41 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     });
   }
   read_robot(file, path, job, out);
-  modal::MissingDirections said;
-  const auto structure = [&](const std::string& table, modal::ModalModel& model) {
-    std::filesystem::path modes, frf;
-    read_structure(file, table, modes, frf, model);
-    if (table == "dynamics") said = read_missing_directions(file, table, model);
-    if (!frf.empty()) throw file.reject(table + ".frf", "must be modes here", "Fit them: robomill modes");
-    if (!modes.empty()) model = modal::read_modes(modes, out.notes);
-  };
-  structure("dynamics", out.dynamics);
+  DynamicsTable dynamics = read_dynamics(file);
+  if (!dynamics.structure.own.modes.empty()) keep_named_directions(file, dynamics.structure.own);
+  out.dynamics = modes_of(file, "dynamics", dynamics.structure, out.notes);
   modal::FrfSet none;
-  if (const auto assumed = complete_directions(out.dynamics, none, said, path, "dynamics")) {
+  if (const auto assumed = complete_directions(out.dynamics, none, dynamics.directions, path, "dynamics")) {
     out.assumed.push_back(*assumed);
   }
-  structure("workpiece_dynamics", out.workpiece_dynamics);
+  out.workpiece_dynamics = modes_of(file, "workpiece_dynamics", read_workpiece_dynamics(file), out.notes);
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   return out;
 }
 
 }  // namespace
+
+const io::Schema<Cut>& forces_options_table() {
+  using cutting::ForceOptions;
+  static const io::Schema<Cut> table(
+      "forces", "how forces are computed",
+      {io::of(&Cut::force, key("steps", &ForceOptions::steps, "of a revolution").at_least(8.0).at_most(1e5)),
+       key("slices", &Cut::slices, "rings of the cutter; 0: as many as it takes").at_least(0.0).at_most(1e4),
+       key("power_time_s", &Cut::power_time_s,
+           "along a program: the power is averaged over this time before it is compared with the spindle")
+           .above(0.0)});
+  return table;
+}
+
+const io::Schema<Cut>& robot_of_cut_table() {
+  static const io::Schema<Cut> table(
+      "robot_of_cut", "the robot that a single cut deflects",
+      {io::declared<Cut>("cell", io::Holds::path, "the file that describes it"),
+       key("joints_deg", &Cut::joints_rad, "its posture"), feed_direction_row(),
+       key("vibration", &Cut::robot_vibrates,
+           "the arm's own modes take part in the vibration (needs links and damping in the cell)")});
+  return table;
+}
 
 InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   if (!error.parts().where.empty()) return error;

@@ -196,6 +196,14 @@ TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
   expect("lead_deg = 10", "surface_radius_along_feed_mm = 0", "surface_radius_along_feed_mm = 0");
   expect("[workpiece_dynamics]\nz = [{ frequency_hz = 200, damping_ratio = 0.02, modal_mass_kg = 3 }]",
          "[robot]\njoints_deg = [0, 0, 0]", "robot.cell: is missing");
+  const std::string part = "[workpiece_dynamics]";
+  expect(part, "[dynamics]\ncell = \"cell.toml\"\n" + part, "dynamics.joints_deg: is missing");
+  expect(part, "[dynamics]\njoints_deg = [0, 0, 0]\n" + part, "dynamics.cell: is missing");
+  expect(part, "[dynamics]\ncell = \"cell.toml\"\njoints_deg = 0\nmodes = \"m.json\"\n" + part,
+         "dynamics.cell = \"cell.toml\"; must not stand beside modes");
+  expect(part, "[dynamics]\naxes = \"base\"\n" + part, "must be \"feed\" or \"tool\"");
+  expect(part, part + "\nfrf = \"f.csv\"", "workpiece_dynamics: must give only one of modes, frf");
+  expect("center_mm = [1, 2]", "min_mm = [1, 2, 3]", "stock.min_mm: is no part of this kind of stock");
 }
 
 TEST(ForcesToml, DamagedFilesAreReadOrRejected) {

@@ -17,6 +17,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/files/schemas.hpp"
 #include "robomill/modal/files/frf_check.hpp"
+#include "robomill/stability/files/chart_schema.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -199,6 +200,10 @@ std::string kind_of_mat(const std::filesystem::path& path) {
 }
 
 FileKind kind_of_text(const Beginning& file) {
+  using stability::SweptParameter;
+  static const std::array<std::string, 3> ranges = {"from_" + stability::swept_key(SweptParameter::radial_depth),
+                                                    "from_" + stability::swept_key(SweptParameter::lead),
+                                                    "from_" + stability::swept_key(SweptParameter::tilt)};
   static const std::vector<Signature> tables = {
       {{"block", "line", "spectral_radius"}, "result", "blocks"},
       {{"block", "line", "mean_fx_n"}, "result", "forces"},
@@ -214,9 +219,9 @@ FileKind kind_of_text(const Beginning& file) {
       {{"method", "lowest_limit_mm"}, "result", "lobes"},
       {{"spindle_speed_rpm", "chatter_frequency_hz"}, "result", "lobes"},
       {{"spindle_speed_rpm", "dominant_frequency_hz"}, "result", "lobes"},
-      {{"spindle_speed_rpm", "from_radial_depth_mm"}, "result", "lobes"},
-      {{"spindle_speed_rpm", "from_lead_deg"}, "result", "lobes"},
-      {{"spindle_speed_rpm", "from_tilt_deg"}, "result", "lobes"},
+      {{"spindle_speed_rpm", ranges[0]}, "result", "lobes"},
+      {{"spindle_speed_rpm", ranges[1]}, "result", "lobes"},
+      {{"spindle_speed_rpm", ranges[2]}, "result", "lobes"},
       {{"tool", "length_mm", "diameter_mm"}, "tools"},
       {{"feed_per_tooth_mm", "axial_depth_mm", "fx_n"}, "slots"},
       {{"dx_mm", "dy_mm", "dz_mm", "fx_n"}, "loads"},

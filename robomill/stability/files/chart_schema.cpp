@@ -4,6 +4,7 @@ namespace robomill::stability {
 namespace {
 
 using io::key;
+using io::of;
 using io::Schema;
 
 constexpr const char* not_percent = "It is a share of the value, not a percentage";
@@ -13,16 +14,42 @@ constexpr Name<Output> outputs[] = {{"boundary", Output::boundary}, {"map", Outp
 
 }  // namespace
 
-const Schema<LobesOptions>& chart_options_table() {
-  static const Schema<LobesOptions> table(
+std::string swept_key(SweptParameter parameter) {
+  return std::string(name_in(swept_names, parameter)) + (is_angle(parameter) ? "_deg" : "_mm");
+}
+
+std::optional<std::array<double, 2>> ChartTable::range_of(SweptParameter parameter) const {
+  if (parameter == SweptParameter::radial_depth) return radial_depth_m;
+  if (parameter == SweptParameter::lead) return lead_rad;
+  if (parameter == SweptParameter::tilt) return tilt_rad;
+  return std::nullopt;
+}
+
+const Schema<ChartTable>& chart_options_table() {
+  const auto option = [](const io::Row<LobesOptions>& row) { return of(&ChartTable::options, row); };
+  const auto range = [](SweptParameter parameter, std::optional<std::array<double, 2>> ChartTable::*member) {
+    return key(swept_key(parameter), member, "from, to, where sweep varies it").as("range");
+  };
+  static const Schema<ChartTable> table(
       "lobes", "the stability chart",
-      {key("spindle_speed_rpm", &LobesOptions::spindle_speed_rad_per_s, "from, to").above(0.0),
-       key("axial_depth_mm", &LobesOptions::axial_depth_m, "from, to").at_least(0.0),
-       key("grid", &LobesOptions::grid, "speeds and depths at which the chart is evaluated first").at_least(2.0),
-       key("method", &LobesOptions::method, method_names, "by which stability is computed"),
-       key("output", &LobesOptions::output, outputs, "curves alone, or the spectral radius on the whole grid"),
-       key("intervals", &LobesOptions::intervals, "of a tooth period, of the discretizations").at_least(4.0),
-       key("tolerance", &LobesOptions::tolerance, "of the spectral radius").at_least(1e-10).at_most(0.1)});
+      {option(key("spindle_speed_rpm", &LobesOptions::spindle_speed_rad_per_s, "from, to").above(0.0)),
+       option(key(swept_key(SweptParameter::axial_depth), &LobesOptions::axial_depth_m, "from, to").at_least(0.0)),
+       key("sweep", &ChartTable::sweep, swept_names, "what the chart varies beside the speed (grid then 60 x 40)"),
+       range(SweptParameter::radial_depth, &ChartTable::radial_depth_m),
+       range(SweptParameter::lead, &ChartTable::lead_rad), range(SweptParameter::tilt, &ChartTable::tilt_rad),
+       option(
+           key("grid", &LobesOptions::grid, "speeds and depths at which the chart is evaluated first").at_least(2.0)),
+       option(key("method", &LobesOptions::method, method_names, "by which stability is computed")),
+       option(key("output", &LobesOptions::output, outputs, "curves alone, or the spectral radius on the whole grid")),
+       option(key("intervals", &LobesOptions::intervals, "of a tooth period, of the discretizations").at_least(4.0)),
+       option(key("tolerance", &LobesOptions::tolerance, "of the spectral radius").at_least(1e-10).at_most(0.1))});
+  return table;
+}
+
+const Schema<SurfaceErrorTable>& surface_error_table() {
+  static const Schema<SurfaceErrorTable> table(
+      "surface_error", "requests the map of surface errors, for charts over the axial depth; needs the feed",
+      {key("grid", &SurfaceErrorTable::grid, "speeds and depths").at_least(2.0)});
   return table;
 }
 

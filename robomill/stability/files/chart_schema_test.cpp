@@ -23,14 +23,15 @@ method = "zeroth-order"
 frequency_std_ratio = 0.01
 )"));
   cutting::Cutter cutter;
-  LobesOptions options;
+  ChartTable chart;
   Uncertainty uncertainty;
   cutting::cutter_table().read(file, "tool", cutter);
-  chart_options_table().read(file, "lobes", options);
+  chart_options_table().read(file, "lobes", chart);
   uncertainty_options_table().read(file, "uncertainty", uncertainty);
   EXPECT_TRUE(file.done().empty());
   EXPECT_EQ(cutter.mill.teeth, 3);
   EXPECT_EQ(cutter.mill.tooth_helix_rad[2], 34.0 * units::deg);
+  const LobesOptions& options = chart.options;
   EXPECT_EQ(options.spindle_speed_rad_per_s[0], 4000.0 * units::rpm);
   EXPECT_EQ(options.grid, (std::array<int, 2>{120, 40}));
   EXPECT_EQ(options.method, Method::zeroth_order);
@@ -43,8 +44,8 @@ frequency_std_ratio = 0.01
 
 TEST(ChartSchema, RejectsARangeOfTheWrongLength) {
   io::TomlFile file(io::TomlSource("lobes.toml", "[lobes]\nspindle_speed_rpm = 4000\naxial_depth_mm = [0, 6]\n"));
-  LobesOptions options;
-  EXPECT_EQ(test::rejection([&] { chart_options_table().read(file, "lobes", options); }),
+  ChartTable chart;
+  EXPECT_EQ(test::rejection([&] { chart_options_table().read(file, "lobes", chart); }),
             "lobes.toml:2: lobes.spindle_speed_rpm = 4000 rpm; must hold 2 numbers");
 }
 

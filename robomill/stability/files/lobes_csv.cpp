@@ -7,6 +7,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
+#include "robomill/stability/files/chart_schema.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -40,9 +41,7 @@ struct Column {
 };
 
 Column column_of(SweptParameter parameter) {
-  const std::string name(name_in(swept_names, parameter));
-  if (is_angle(parameter)) return {.name = name + "_deg", .unit = units::deg};
-  return {.name = name + "_mm"};
+  return {.name = swept_key(parameter), .unit = is_angle(parameter) ? units::deg : units::mm};
 }
 
 }  // namespace
