@@ -287,6 +287,29 @@ void read_structures(io::TomlFile& file, LobesFile& out) {
   out.problem.workpiece_dynamics = std::move(part.own);
 }
 
+/// The chart's depths, beside edges and drill.
+void check_depth(const io::TomlFile& file, const cutting::Cutter& cutter, const LobesFile& out) {
+  const double edges_m = cutter.cutting_height_m;
+  if (!out.problem.spatial && file.has("tool.cutting_height_mm") &&
+      out.options.axial_depth_m[1] > edges_m * (1.0 + 1e-9)) {
+    throw file.reject("lobes.axial_depth_mm",
+                      fmt::format("goes deeper than the edges reach, {:.6g} mm", edges_m / units::mm),
+                      "tool.cutting_height_mm says how far up they reach");
+  }
+  if (out.drilling && out.options.axial_depth_m[1] > 0.5 * cutter.mill.diameter_m * (1.0 + 1e-12)) {
+    throw file.reject("lobes.axial_depth_mm", "must end at the drill's radius at most",
+                      "Of drilling it is the lips' radial width, from the pilot hole to the rim");
+  }
+}
+
+void read_surface_error(io::TomlFile& file, LobesFile& out) {
+  if (!file.has("surface_error")) return;
+  stability::SurfaceErrorTable surface;
+  stability::surface_error_table().read(file, "surface_error", surface);
+  if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
+  out.surface_grid = surface.grid;
+}
+
 /// What a job measures, predicts or takes the structure from.
 constexpr const char* structure_keys[] = {"job.hits",     "job.frf",    "job.modes",  "job.assembly", "dynamics.modes",
                                           "dynamics.frf", "dynamics.x", "dynamics.y", "dynamics.z"};
@@ -326,24 +349,10 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   read_structures(file, out);
   check_chart(file, chart, out);
   if (spatial) check_spatial(file, out);
-  const double edges_m = cutter.cutting_height_m;
-  if (!spatial && file.has("tool.cutting_height_mm") && out.options.axial_depth_m[1] > edges_m * (1.0 + 1e-9)) {
-    throw file.reject("lobes.axial_depth_mm",
-                      fmt::format("goes deeper than the edges reach, {:.6g} mm", edges_m / units::mm),
-                      "tool.cutting_height_mm says how far up they reach");
-  }
-  if (out.drilling && out.options.axial_depth_m[1] > 0.5 * cutter.mill.diameter_m * (1.0 + 1e-12)) {
-    throw file.reject("lobes.axial_depth_mm", "must end at the drill's radius at most",
-                      "Of drilling it is the lips' radial width, from the pilot hole to the rim");
-  }
+  check_depth(file, cutter, out);
   read_uncertainty(file, out.uncertainty);
   take_material(file, table, cutter.kind, out);
-  if (file.has("surface_error")) {
-    stability::SurfaceErrorTable surface;
-    stability::surface_error_table().read(file, "surface_error", surface);
-    if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
-    out.surface_grid = surface.grid;
-  }
+  read_surface_error(file, out);
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   return out;
 }
