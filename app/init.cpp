@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/jobs/interview.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -33,6 +34,19 @@ void ask(jobs::Template kind, jobs::InitFiles& files) {
   }
 }
 
+/// The schemas that are installed with this program, or those of the sources around its build; empty: neither is there.
+std::filesystem::path schema_folder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (std::filesystem::path above = program; above.has_relative_path(); above = above.parent_path()) {
+    for (const char* place : {"share/robomill/schema", "docs/schema"}) {
+      std::filesystem::path folder = above.parent_path() / place;
+      if (std::filesystem::is_regular_file(folder / "job.toml.schema.json", error)) return folder;
+    }
+  }
+  return {};
+}
+
 void print_summary(const jobs::InitFiles& files) {
   for (const jobs::NewFile& file : files.files) fmt::print("wrote {}\n", printable(file.path.string()));
   for (const std::filesystem::path& kept : files.kept) fmt::print("kept  {}\n", printable(kept.string()));
@@ -49,7 +63,8 @@ Exit run_init(const jobs::VerbJob& job, const Common& common, Progress& /*progre
                                             .file = common.to_stdout() ? std::string() : common.output,
                                             .data = job.file("data"),
                                             .robot = job.text("robot"),
-                                            .example = job.flag("example")});
+                                            .example = job.flag("example"),
+                                            .schemas = schema_folder()});
   if (common.to_stdout()) {
     if (interactive) ask(kind, files);
     fmt::print("{}", files.files.front().text);

@@ -57,7 +57,7 @@ TEST_F(InitVerb, AsksForWhatNobodySaid) {
   for (const char* kind : {"lobes", "forces", "assembly", "cell", "monitor"}) {
     ASSERT_EQ(robomill(std::string("init ") + kind).exit, 0) << kind;
   }
-  const std::pair<const char*, const char*> runs[] = {{"lobes lobes.toml", "lobes.toml:8: tool.teeth: is missing"},
+  const std::pair<const char*, const char*> runs[] = {{"lobes lobes.toml", "lobes.toml:9: tool.teeth: is missing"},
                                                       {"plan job.toml -o out", "tool.teeth: is missing"},
                                                       {"lobes job.toml", "tool.teeth: is missing"},
                                                       {"frf hits.toml -o tip.uff", "hits[1].file: is missing"},
@@ -87,16 +87,31 @@ TEST_F(InitVerb, OverwritesNothing) {
 
 TEST_F(InitVerb, SchemasArePrintedByTheirDocument) {
   EXPECT_NE(robomill("schema").out.find("lobes.json\n"), std::string::npos);
+  EXPECT_NE(robomill("schema lobes.toml").out.find("\"spindle_speed_rpm\""), std::string::npos);
   EXPECT_NE(robomill("schema lobes.json").out.find("\"const\": \"lobes/1\""), std::string::npos);
   const Ended unknown = robomill("schema poem.json");
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_NE(unknown.err.find("lobes.json"), std::string::npos) << unknown.err;
 }
 
+// As Taplo reads it: the first line, a path as it is.
+TEST_F(InitVerb, DocumentsNameTheirSchema) {
+  for (const std::string kind : {"job", "lobes", "forces", "assembly", "cell", "monitor", "hits"}) {
+    for (const std::string option : {"", " --example"}) {
+      const Ended run = robomill("init " + kind + option + " -o -");
+      const std::string line = run.out.substr(0, run.out.find('\n')), directive = "#:schema ";
+      ASSERT_EQ(line.rfind(directive + "/", 0), 0U) << line;
+      const std::filesystem::path schema = line.substr(directive.size());
+      EXPECT_EQ(schema.filename(), kind + ".toml.schema.json");
+      EXPECT_EQ(slurp(schema), robomill("schema " + kind + ".toml").out);
+    }
+  }
+}
+
 TEST_F(InitVerb, DashWritesTheDocumentAlone) {
   const Ended run = robomill("init job -o -");
   ASSERT_EQ(run.exit, 0) << run.err;
-  EXPECT_EQ(run.out.rfind("# The whole job", 0), 0U) << run.out;
+  EXPECT_EQ(run.out.find("# The whole job"), run.out.find('\n') + 1) << run.out;
   EXPECT_NE(run.err.find("not written: hits.toml, which it names"), std::string::npos) << run.err;
   EXPECT_FALSE(there("job.toml"));
   EXPECT_FALSE(there("hits.toml"));

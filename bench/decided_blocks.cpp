@@ -29,7 +29,7 @@
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/plan/decision.hpp"
+#include "robomill/jobs/plan_stages.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/simulation/posture.hpp"

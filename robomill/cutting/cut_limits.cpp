@@ -28,13 +28,12 @@ void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m) {
 
 void require_depth_margin(double depth_margin) {
   if (depth_margin >= 0.0 && depth_margin < 1.0) return;
-  throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)", "0.2 stays 20 % below the limit");
+  throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)", depth_margin_hint);
 }
 
 void require_speed_window(double speed_window) {
   if (speed_window >= 0.0 && speed_window < 0.5) return;
-  throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)",
-                     "0.02 looks at 2 % of speed to each side");
+  throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)", speed_window_hint);
 }
 
 }  // namespace robomill::cutting

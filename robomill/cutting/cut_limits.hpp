@@ -13,6 +13,10 @@ void require_spindle_speed(const std::string& field, double spindle_speed_rad_pe
 /// @throws InvalidInput unless in [0, 10 mm]
 void require_feed_per_tooth(const std::string& field, double feed_per_tooth_m);
 
+/// What is said beside a value that breaks its rule.
+inline constexpr const char* depth_margin_hint = "0.2 stays 20 % below the limit";
+inline constexpr const char* speed_window_hint = "0.02 looks at 2 % of speed to each side";
+
 /// Share of a limit that depths keep off, as "depth_margin". @throws InvalidInput unless in [0, 1)
 void require_depth_margin(double depth_margin);
 

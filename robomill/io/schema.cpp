@@ -103,6 +103,11 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& /*me
   return true;
 }
 
+bool read_value(TomlFile& file, const std::string& path, const std::string& /*member*/, double /*factor*/,
+                const Key& /*key*/, std::vector<std::filesystem::path>& out) {
+  return file.paths(path, out);
+}
+
 Json write_value(double value, const Shown& shown) {
   const double out = value / shown.factor;
   return shown.exact && std::isfinite(out) ? Json(out) : number(out);
@@ -133,6 +138,8 @@ namespace {
 /// A schema of every table that a document holds, by its name.
 class Definitions {
  public:
+  /// @param whole  keys that are required are required of this document; else only in lists, which one file gives
+  explicit Definitions(bool whole) : whole_(whole) {}
   Json properties_of(const TableInfo& table) {
     Json properties = Json::object(), required = Json::array();
     if (table.version > 0) {
@@ -141,9 +148,10 @@ class Definitions {
     }
     for (const Key& key : table.keys) {
       properties[key.name] = key_schema(key);
-      if (key.required) required.push_back(key.name);
+      if (key.required && (whole_ || lists_ > 0)) required.push_back(key.name);
     }
-    Json out = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    Json out = {{"type", "object"}, {"properties", std::move(properties)}};
+    out["additionalProperties"] = false;
     if (!required.empty()) out["required"] = std::move(required);
     return out;
   }
@@ -190,13 +198,16 @@ class Definitions {
   }
 
   Json reference(const TableInfo& table) {
-    if (!tables_.contains(table.name)) {
-      tables_[table.name] = nullptr;  // its place, before those that it holds
+    std::string& name = names_[&table];
+    if (name.empty()) {
+      name = table.name;
+      for (int same = 2; tables_.contains(name); ++same) name = fmt::format("{}_{}", table.name, same);
+      tables_[name] = nullptr;  // its place, before those that it holds
       Json schema = {{"description", table.meaning}};
       schema.update(properties_of(table));
-      tables_[table.name] = std::move(schema);
+      tables_[name] = std::move(schema);
     }
-    return {{"$ref", "#/$defs/" + table.name}};
+    return {{"$ref", "#/$defs/" + name}};
   }
 
   /// The same, or null. Numbers that are not finite are null wherever they stand.
@@ -210,7 +221,9 @@ class Definitions {
   }
 
   Json key_schema(const Key& key) {
+    lists_ += key.lists;
     Json out = value_schema(key);
+    lists_ -= key.lists;
     if (key.nullable) out = or_null(std::move(out));
     for (int i = 0; i < key.lists; ++i) {
       Json list = {{"type", "array"}, {"items", out}};
@@ -225,6 +238,9 @@ class Definitions {
     return out;
   }
 
+  bool whole_;
+  int lists_ = 0;  ///< around the table that is described
+  std::map<const TableInfo*, std::string> names_;
   Json tables_ = Json::object();
 };
 
@@ -284,11 +300,12 @@ const Schema<Assumption>& assumption_table() {
 }
 
 Json json_schema(const TableInfo& document) {
-  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"$id", fmt::format("urn:robomill:{}:{}", document.name, document.version)},
-              {"title", document.name},
-              {"description", document.meaning}};
-  Definitions definitions;
+  Json out = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"$id", "urn:robomill:" + document.name + (document.version > 0 ? fmt::format(":{}", document.version) : "")},
+      {"title", document.name},
+      {"description", document.meaning}};
+  Definitions definitions(!document.several_files);
   out.update(definitions.properties_of(document));
   if (Json tables = definitions.take(); !tables.empty()) out["$defs"] = std::move(tables);
   return out;

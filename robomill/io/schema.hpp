@@ -33,6 +33,7 @@ struct Row {
   std::function<Json(const T&, const Row&)> write = {};
   bool always = true;       ///< the key is written of every object
   bool drops_null = false;  ///< … but where its value is null or an empty list
+  bool usual = true;        ///< the member's initial value is a default
 
   Row& required(std::string hint = {}) {
     key.required = true;
@@ -79,6 +80,11 @@ struct Row {
     read = [code](TomlFile& file, const std::string& path, const Row&, T& out) { code(file, path, out); };
     return *this;
   }
+  /// Without a default: what a missing key means depends on others.
+  Row& no_default() {
+    usual = false;
+    return *this;
+  }
   /// Null where the value is not known; a text where it is empty.
   Row& nullable() {
     key.nullable = true;
@@ -104,6 +110,13 @@ struct Row {
   /// The range of a form's slider, in the key's unit.
   Row& slider(double lowest, double highest, double step) {
     key.slider = Slider{.lowest = lowest, .highest = highest, .step = step};
+    return *this;
+  }
+  /// The same, those of an enumeration.
+  template <class E, std::size_t n>
+  Row& words(const Name<E> (&names)[n]) {
+    key.holds = Holds::word;
+    for (const auto& [word, value] : names) key.words.emplace_back(word);
     return *this;
   }
   /// The function gives numbers in the key's unit.
@@ -150,8 +163,8 @@ template <class T, class M>
 /// A key that holds one word of a list.
 template <class T, class E, std::size_t n>
 [[nodiscard]] Row<T> key(std::string name, E T::*member, const Name<E> (&names)[n], std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::word, .meaning = std::move(meaning)}};
-  for (const auto& [word, value] : names) row.key.words.emplace_back(word);
+  Row<T> row{.key = {.name = std::move(name), .meaning = std::move(meaning)}};
+  row.words(names);
   row.read = [member, &names](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     file.choice(path, names, out.*member);
   };
@@ -205,8 +218,8 @@ requires requires {
 }
 [[nodiscard]] auto key(std::string name, F value, const Name<E> (&names)[n], std::string meaning) {
   using T = typename detail::Getter<F>::Object;
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::word, .meaning = std::move(meaning)}};
-  for (const auto& [word, known] : names) row.key.words.emplace_back(word);
+  Row<T> row{.key = {.name = std::move(name), .meaning = std::move(meaning)}};
+  row.words(names);
   row.write = [value, &names](const T& object, const Row<T>&) { return text_or_null(name_in(names, value(object))); };
   return row;
 }
@@ -219,7 +232,8 @@ template <class T, class U>
              .factor = row.factor,
              .every_digit = row.every_digit,
              .always = row.always,
-             .drops_null = row.drops_null};
+             .drops_null = row.drops_null,
+             .usual = row.usual};
   if (row.read) {
     out.read = [part, row](TomlFile& file, const std::string& path, const Row<T>& self, T& object) {
       Row<U> named = row;
@@ -281,7 +295,7 @@ class Schema {
     for (Row<T>& row : rows_) {
       if (use == Use::written) {
         row.key.required = row.always;
-      } else if (row.read && !row.key.required) {
+      } else if (row.read && row.usual && !row.key.required) {
         row.key.default_value = default_of(row.write(fresh, row), row.key.rule);
       }
       info_.keys.push_back(row.key);

@@ -102,6 +102,8 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
                 std::vector<int>& out);
 bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
                 std::vector<std::string>& out);
+bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
+                std::vector<std::filesystem::path>& out);
 template <class M, std::size_t n>
 bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
                 std::array<M, n>& out) {
@@ -112,8 +114,8 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
   return true;
 }
 template <int n>
-bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor, const Key& key,
-                Eigen::Matrix<double, n, 1>& out) {
+requires(n > 0) bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor,
+                                const Key& key, Eigen::Matrix<double, n, 1>& out) {
   std::array<double, n> values;
   if (!read_value(file, path, member, factor, key, values)) return false;
   out = Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.data());

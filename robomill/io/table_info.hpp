@@ -66,6 +66,7 @@ struct TableInfo {
   std::vector<Key> keys = {};
   Use use = Use::read;
   int version = 0;  ///< of a document: how often its keys have changed their meaning, from 1; 0: no document of its own
+  bool several_files = false;  ///< a document whose tables other files may complete: none of their keys is required
   /// "lobes/1", as a document names itself in its key `document`.
   [[nodiscard]] std::string document() const { return name + "/" + std::to_string(version); }
 };

@@ -151,7 +151,8 @@ TEST(UsualRanges, HaveARowForEveryKeyWithAUnit) {
     bool of_keys = false;  // in a table of the document's own keys
     for (std::size_t at = begin + 1; at < end; at = row.size() + at + 1) {
       row = text.substr(at, text.find('\n', at) - at);
-      if (row.starts_with("<!-- schema: ")) at = text.find("<!-- end -->", at) - row.size() - 1;  // of a result
+      const bool of_result = row.starts_with("<!-- schema: ") && row.find(".toml") == std::string::npos;
+      if (of_result) at = text.find("<!-- end -->", at) - row.size() - 1;
       if (row.starts_with("| key")) of_keys = row.find("| meaning |") != std::string::npos;
       if (row.empty()) of_keys = false;
       if (!of_keys || !row.starts_with("| `")) continue;

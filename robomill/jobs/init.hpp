@@ -1,7 +1,9 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -28,6 +30,8 @@ struct InitOptions {
   std::filesystem::path data = {};  ///< a folder with records of hits; nothing: that of `file`
   std::string robot = {};           ///< of a cell: one of cell::known_arms(); nothing: that of the template
   bool example = false;             ///< made up such that it runs as it is; without records of the folder
+  /// With the schemas: documents begin with "#:schema PATH", as editors with Taplo read it. Nothing: without that line.
+  std::filesystem::path schemas = {};
 };
 
 /// A file that is to be written.
@@ -63,5 +67,26 @@ ROBOMILL_API void require_new(const InitFiles& files);
 /// Writes all of them, the document that was asked for last. @throws InvalidInput as require_new, and where a place
 /// cannot be written
 ROBOMILL_API void write_init(const InitFiles& files);
+
+/// Questions in shop terms whose answers are put into the documents that robomill init is to write: a value each in its
+/// place, comments as they were. Answers have units or none: "0.25 in", "100 mV/g", "12 Nm", "7.5 kW".
+class Interview {
+ public:
+  /// @param files  outlives the interview; a question whose keys none of its documents has is not asked
+  Interview(Template kind, InitFiles& files);
+  ~Interview();
+  Interview(const Interview&) = delete;
+  Interview& operator=(const Interview&) = delete;
+
+  /// What is asked next, with its default in brackets; nothing after the last.
+  [[nodiscard]] std::optional<std::string> question() const;
+  /// An empty answer takes the default.
+  /// @throws InvalidInput saying what is wrong with it: the question stays the same
+  void answer(std::string_view text);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace robomill::jobs

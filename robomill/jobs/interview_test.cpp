@@ -1,4 +1,4 @@
-#include "robomill/jobs/interview.hpp"
+#include "robomill/jobs/init.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/jobs/files/shop_units.hpp"
+#include "robomill/jobs/init/questions.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "testing/samples.hpp"
 #include "testing/support.hpp"
@@ -59,7 +59,7 @@ std::string tap(const std::string& force, const std::string& response) {
 
 TEST(ShopUnits, AreUnderstoodAndConverted) {
   const auto mm = [](const char* text, const char* plain = "") {
-    return parse_quantity(text, Quantity::length, plain);
+    return io::parse_quantity(text, Quantity::length, plain);
   };
   EXPECT_DOUBLE_EQ(mm("12"), 12.0);
   EXPECT_DOUBLE_EQ(mm(" 0,5 mm"), 0.5);
@@ -69,22 +69,22 @@ TEST(ShopUnits, AreUnderstoodAndConverted) {
   EXPECT_DOUBLE_EQ(mm("3/8", "in"), 9.525);
   EXPECT_DOUBLE_EQ(mm("10 mm", "in"), 10.0);
   EXPECT_DOUBLE_EQ(mm("50 µm"), 0.05);
-  EXPECT_DOUBLE_EQ(parse_quantity("10 mV/g", Quantity::acceleration_sensitivity), 10.0);
-  EXPECT_DOUBLE_EQ(parse_quantity("10 mV/(m/s²)", Quantity::acceleration_sensitivity), 98.0665);
-  EXPECT_NEAR(parse_quantity("10 mV/lbf", Quantity::force_sensitivity), 2.248, 1e-3);
-  EXPECT_DOUBLE_EQ(parse_quantity("12 Nm", Quantity::torque), 12.0);
-  EXPECT_DOUBLE_EQ(parse_quantity("12 N·m", Quantity::torque), 12.0);
-  EXPECT_NEAR(parse_quantity("10 ft lbf", Quantity::torque), 13.558, 1e-3);
-  EXPECT_DOUBLE_EQ(parse_quantity("7.5 kW", Quantity::power), 7.5);
-  EXPECT_NEAR(parse_quantity("10 hp", Quantity::power), 7.457, 1e-3);
-  EXPECT_DOUBLE_EQ(parse_quantity("12000 1/min", Quantity::spindle_speed), 12000.0);
-  EXPECT_DOUBLE_EQ(parse_quantity("200 Hz", Quantity::spindle_speed), 12000.0);
-  EXPECT_DOUBLE_EQ(parse_quantity("4 g", Quantity::mass), 0.004);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("10 mV/g", Quantity::acceleration_sensitivity), 10.0);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("10 mV/(m/s²)", Quantity::acceleration_sensitivity), 98.0665);
+  EXPECT_NEAR(io::parse_quantity("10 mV/lbf", Quantity::force_sensitivity), 2.248, 1e-3);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("12 Nm", Quantity::torque), 12.0);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("12 N·m", Quantity::torque), 12.0);
+  EXPECT_NEAR(io::parse_quantity("10 ft lbf", Quantity::torque), 13.558, 1e-3);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("7.5 kW", Quantity::power), 7.5);
+  EXPECT_NEAR(io::parse_quantity("10 hp", Quantity::power), 7.457, 1e-3);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("12000 1/min", Quantity::spindle_speed), 12000.0);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("200 Hz", Quantity::spindle_speed), 12000.0);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("4 g", Quantity::mass), 0.004);
 }
 
 TEST(ShopUnits, RejectWhatIsNoneOfTheQuantity) {
   const auto say = [](const char* text, Quantity quantity) {
-    return test::rejection([&] { static_cast<void>(parse_quantity(text, quantity)); });
+    return test::rejection([&] { static_cast<void>(io::parse_quantity(text, quantity)); });
   };
   EXPECT_EQ(say("12 kg", Quantity::length),
             "\"12 kg\": is not a length. A number with one of mm, in, thou, um, cm, m, or alone");
@@ -92,13 +92,13 @@ TEST(ShopUnits, RejectWhatIsNoneOfTheQuantity) {
   for (const char* text : {"inf mm", "nan", "1/0 in", "mm", "--3 mm", "3 mm mm"}) {
     EXPECT_NE(say(text, Quantity::length).find("is not a length"), std::string::npos) << text;
   }
-  EXPECT_EQ(parse_quantity("12", Quantity::number), 12.0);
+  EXPECT_EQ(io::parse_quantity("12", Quantity::number), 12.0);
 }
 
 // Thousands to some, a decimal to others: neither is guessed.
 TEST(ShopUnits, RejectACommaThatMayPartThousands) {
   const auto say = [](const char* text, Quantity quantity) {
-    return test::rejection([&] { static_cast<void>(parse_quantity(text, quantity)); });
+    return test::rejection([&] { static_cast<void>(io::parse_quantity(text, quantity)); });
   };
   EXPECT_EQ(say("16,000 rpm", Quantity::spindle_speed),
             "\"16,000 rpm\": may have a comma for thousands or one for decimals. Write 16000 or 16.0");
@@ -106,11 +106,11 @@ TEST(ShopUnits, RejectACommaThatMayPartThousands) {
   EXPECT_NE(say("-1,250", Quantity::length).find("Write -1250 or -1.25"), std::string::npos);
   EXPECT_NE(say("1,000/4 in", Quantity::length).find("Write 1000 or 1.0"), std::string::npos);
   EXPECT_NE(say("1,234,567 rpm", Quantity::spindle_speed), "");
-  EXPECT_DOUBLE_EQ(parse_quantity("0,125 mm", Quantity::length), 0.125);
-  EXPECT_DOUBLE_EQ(parse_quantity("0,05", Quantity::length), 0.05);
-  EXPECT_DOUBLE_EQ(parse_quantity("7,5 kW", Quantity::power), 7.5);
-  EXPECT_DOUBLE_EQ(parse_quantity("1234,567 mm", Quantity::length), 1234.567);
-  EXPECT_DOUBLE_EQ(parse_quantity("16000 rpm", Quantity::spindle_speed), 16000.0);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("0,125 mm", Quantity::length), 0.125);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("0,05", Quantity::length), 0.05);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("7,5 kW", Quantity::power), 7.5);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("1234,567 mm", Quantity::length), 1234.567);
+  EXPECT_DOUBLE_EQ(io::parse_quantity("16000 rpm", Quantity::spindle_speed), 16000.0);
 }
 
 TEST_F(Asked, DefaultsLeaveTheTemplateAsItIs) {

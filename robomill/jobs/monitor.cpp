@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -12,7 +11,6 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/decision/finish.hpp"
 #include "robomill/io/usual_ranges.hpp"
@@ -20,40 +18,10 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 #include "robomill/modal/files/modes_files.hpp"
-#include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::jobs {
 
 namespace {
-
-/// Of each limit: whether the cut just above it is unstable without the wave of the tooth before.
-std::vector<bool> coupling_above(const stability::LobesProblem& problem, const stability::LobesResult& lobes,
-                                 Progress& progress) {
-  constexpr double above = 1.05;
-  std::vector<char> found(lobes.limit.size(), 0);
-  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
-    progress.check();
-    for (std::size_t i = begin; i < end; ++i) {
-      const stability::Limit& limit = lobes.limit[i];
-      if (limit.status != stability::Limit::Status::found || !(limit.axial_depth_m > 0.0)) continue;
-      const stability::ChatterMechanism mechanism = stability::chatter_mechanism(
-          problem,
-          {.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s, .axial_depth_m = above * limit.axial_depth_m});
-      found[i] = mechanism.kind == stability::ChatterMechanism::Kind::mode_coupling ? 1 : 0;
-    }
-  });
-  return {found.begin(), found.end()};
-}
-
-/// Of each limit: how deep forced vibration lets the cut go. Empty where the cut has no feed.
-std::vector<double> vibration_of(const stability::LobesProblem& problem, const stability::LobesResult& lobes,
-                                 Progress& progress) {
-  if (!(problem.milling.feed_per_tooth_m > 0.0) || lobes.axial_depth_m.size() == 0) return {};
-  std::vector<double> speeds;
-  speeds.reserve(lobes.limit.size());
-  for (const stability::Limit& limit : lobes.limit) speeds.push_back(limit.spindle_speed_rad_per_s);
-  return decision::vibration_depths(problem, speeds, lobes.axial_depth_m.maxCoeff(), progress);
-}
 
 /// @throws InvalidInput where monitor.toml says other teeth than its lobes, or allows no speed of theirs
 void require_cut_of(const monitor::MonitorFile& file, const LobesFile& lobes) {
@@ -122,11 +90,7 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
   if (!file.lobes.empty()) {
     const LobesFile lobes = cut_of(file, basis, progress);
     if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;
-    if (!lobes.problem.dynamics.modes.empty()) basis.modes = lobes.problem.dynamics;
-    basis.workpiece = lobes.problem.workpiece_dynamics;
-    basis.lobes = stability::compute_lobes(lobes.problem, lobes.options, progress);
-    basis.vibration_depth_m = vibration_of(lobes.problem, *basis.lobes, progress);
-    if (basis.modes) basis.mode_coupling = coupling_above(lobes.problem, *basis.lobes, progress);
+    basis.take_cut(lobes.problem, lobes.options, progress);
   }
   std::vector<std::string> notes = file.notes;
   if (!file.modes.empty()) basis.modes = modal::read_modes(file.modes, notes);

@@ -1,9 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "robomill/io/file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "robomill/page/report.hpp"
+#include "robomill/process/in_lines.hpp"
 
 // Method: robomill/jobs/README.md, "Outputs"
 
@@ -11,11 +14,6 @@ namespace robomill::cell {
 struct CellCheck;
 struct ModesOfPosture;
 }  // namespace robomill::cell
-
-namespace robomill::process {
-struct ForcesResult;
-struct SmoothResult;
-}  // namespace robomill::process
 
 namespace robomill::jobs {
 
@@ -26,6 +24,7 @@ struct FrfJobResult;
 struct JointResult;
 struct LobesJobResult;
 struct ModesResult;
+struct PlanResult;
 struct SimulateResult;
 struct StiffnessResult;
 struct TipPrediction;
@@ -85,20 +84,56 @@ void write_document(const std::filesystem::path& path, const CalibrateResult& re
 /// measured holder
 void require_holder(const TipPrediction& result, const std::string& option);
 
-/// Why a result is not the answer that its verb is for (exit 3): "the fit did not converge". Empty: it is.
-[[nodiscard]] std::string shortfall(const FrfJobResult& result);
+/// Why a result is not the answer that its verb is for (exit 3): "the fit did not converge". Empty: it is, as of every
+/// result that is not listed.
+template <class Result>
+[[nodiscard]] std::string shortfall(const Result& /*result*/) {
+  return {};
+}
 [[nodiscard]] std::string shortfall(const ModesResult& result);
-[[nodiscard]] std::string shortfall(const cell::ModesOfPosture& result);
-[[nodiscard]] std::string shortfall(const TipPrediction& result);
 [[nodiscard]] std::string shortfall(const ToolsResult& result);
 [[nodiscard]] std::string shortfall(const JointResult& result);
-[[nodiscard]] std::string shortfall(const LobesJobResult& result);
-[[nodiscard]] std::string shortfall(const ExplainResult& result);
 [[nodiscard]] std::string shortfall(const SimulateResult& result);
-[[nodiscard]] std::string shortfall(const process::ForcesResult& result);
 [[nodiscard]] std::string shortfall(const CoefficientsResult& result);
 [[nodiscard]] std::string shortfall(const StiffnessResult& result);
 [[nodiscard]] std::string shortfall(const cell::CellCheck& result);
-[[nodiscard]] std::string shortfall(const process::SmoothResult& result);
+
+/// A result in the lines that the command line prints, and that a report shows where no script runs. Texts out of files
+/// are printable.
+[[nodiscard]] std::string summary(const PlanResult& result);
+[[nodiscard]] std::string summary(const FrfJobResult& result);
+[[nodiscard]] std::string summary(const ModesResult& result);
+[[nodiscard]] std::string summary(const cell::ModesOfPosture& result);
+[[nodiscard]] std::string summary(const TipPrediction& result);
+[[nodiscard]] std::string summary(const ToolsResult& result);
+[[nodiscard]] std::string summary(const JointResult& result);
+[[nodiscard]] std::string summary(const LobesJobResult& result);
+[[nodiscard]] std::string summary(const ExplainResult& result);
+[[nodiscard]] std::string summary(const SimulateResult& result);
+[[nodiscard]] std::string summary(const CoefficientsResult& result);
+[[nodiscard]] std::string summary(const StiffnessResult& result);
+
+/// "2026-07-31 12:05 UTC, robomill 0.1.0".
+[[nodiscard]] std::string created_now();
+
+/// The page of what one verb found: the result's documents, what was assumed, what no document says, and the summary.
+[[nodiscard]] page::Report page_of(const FrfJobResult& result);
+[[nodiscard]] page::Report page_of(const ModesResult& result);
+[[nodiscard]] page::Report page_of(const cell::ModesOfPosture& result);
+[[nodiscard]] page::Report page_of(const TipPrediction& result);
+[[nodiscard]] page::Report page_of(const ToolsResult& result);
+[[nodiscard]] page::Report page_of(const JointResult& result);
+[[nodiscard]] page::Report page_of(const LobesJobResult& result);
+[[nodiscard]] page::Report page_of(const ExplainResult& result);
+[[nodiscard]] page::Report page_of(const SimulateResult& result);
+[[nodiscard]] page::Report page_of(const process::ForcesResult& result);
+[[nodiscard]] page::Report page_of(const CoefficientsResult& result);
+[[nodiscard]] page::Report page_of(const StiffnessResult& result);
+[[nodiscard]] page::Report page_of(const cell::CellCheck& result);
+/// With curves where the job recorded them.
+[[nodiscard]] page::Report page_of(const process::SmoothResult& result);
+/// That of a plan.
+/// @param files  that stand beside it
+[[nodiscard]] page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files);
 
 }  // namespace robomill::jobs

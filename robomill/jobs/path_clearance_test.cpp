@@ -11,7 +11,6 @@
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/report/summary.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "testing/support.hpp"
 

@@ -12,17 +12,18 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
+#include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/forces.hpp"
-#include "robomill/jobs/plan/assumed.hpp"
-#include "robomill/jobs/plan/decision.hpp"
-#include "robomill/jobs/plan/lobes.hpp"
+#include "robomill/jobs/plan_stages.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/process/blocks/dynamics.hpp"
+#include "robomill/process/decide/motion_loads.hpp"
 #include "robomill/process/files/structure_schema.hpp"
+#include "robomill/process/spindle.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -123,9 +124,9 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   modal::FitOptions options;
   options.seed = seed;
   options.modes = result.job.fit_modes;
-  if (result.job.band_high_hz > 0.0) {
-    options.band_low_hz = result.job.band_low_hz;
-    options.band_high_hz = result.job.band_high_hz;
+  if (const std::array<double, 2>& band_hz = result.job.band_hz; band_hz[1] > 0.0) {
+    options.band_low_hz = band_hz[0];
+    options.band_high_hz = band_hz[1];
   } else if (result.hits) {
     const auto [low_hz, high_hz] = result.hits->band_hz();
     options.band_low_hz = low_hz;
@@ -153,48 +154,6 @@ void warn_of_edges(const process::ForcesFile& forces, PlanResult& result) {
                   "(tool.cutting_height_mm): a deeper cut runs the shank into material.",
                   deepest_m / units::mm, result.job.file.filename().string(), edges_m / units::mm,
                   forces.path.filename().string()));
-}
-
-/// Whether the spindle can turn the cutter through the cut whose forces were asked for.
-void warn_of_spindle(PlanResult& result) {
-  const std::vector<decision::SpindleCapacity>& curve = result.job.recommend.spindle;
-  if (curve.empty()) return;
-  std::size_t weak = 0;
-  process::SpindleLoad worst;
-  double most = 0.0;
-  for (const process::SpindleLoad& load : process::spindle_loads(*result.shown().forces)) {
-    const decision::SpindleCapacity able = decision::capacity_at(curve, load.spindle_speed_rad_per_s);
-    const bool inside = able.torque_n_m > 0.0 && able.power_w > 0.0;
-    const double share = inside ? std::max(load.torque_n_m / able.torque_n_m, load.power_w / able.power_w) : HUGE_VAL;
-    if (!(share > 1.0)) continue;
-    if (++weak == 1 || share > most) {
-      most = share;
-      worst = load;
-    }
-  }
-  if (weak == 0) return;
-  const std::string place = worst.line > 0 ? fmt::format("in {} blocks, most in line {}: ", weak, worst.line) : "";
-  const decision::SpindleCapacity able = decision::capacity_at(curve, worst.spindle_speed_rad_per_s);
-  const std::string has = std::isinf(most) ? std::string("that speed is outside the spindle's curve")
-                                           : fmt::format("the spindle has {:.3g} N·m and {:.3g} kW", able.torque_n_m,
-                                                         able.power_w / units::kw);
-  result.warnings.push_back(fmt::format(
-      "The cut asks for more than the spindle has, {}{:.3g} N·m over a revolution and {:.3g} kW over {:.3g} s at "
-      "{:.0f} rpm; {}.",
-      place, worst.torque_n_m, worst.power_w / units::kw, result.shown().forces->cut.power_time_s,
-      worst.spindle_speed_rad_per_s / units::rpm, has));
-}
-
-/// What the spindle has, where the whole program runs at one speed of its curve.
-std::optional<decision::SpindleCapacity> capacity_along(const process::ForcesResult& forces,
-                                                        const std::vector<decision::SpindleCapacity>& curve) {
-  const std::vector<process::SpindleLoad> loads = process::spindle_loads(forces);
-  if (!forces.program || curve.empty() || loads.empty()) return std::nullopt;
-  const double speed = loads.front().spindle_speed_rad_per_s;
-  if (std::ranges::any_of(loads, [&](const process::SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
-    return std::nullopt;
-  }
-  return decision::capacity_at(curve, speed);
 }
 
 /// The job's cell, for forces or for what smooths its program; only serial arms have forces.
@@ -315,11 +274,12 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
   const bool usable = !result.fit || result.fit->usable();
   if (result.job.judges_blocks() && usable) judge(result, *cell, folder, progress);
   const auto add_capacity = [&](process::ForcesResult& forces) {
-    forces.spindle = capacity_along(forces, result.job.recommend.spindle);
+    forces.spindle = process::capacity_along(forces, result.job.recommend.spindle);
   };
   add_capacity(*result.programmed.forces);
   if (result.decided) add_capacity(*result.decided->forces);
-  warn_of_spindle(result);
+  std::string weak = process::spindle_warning(*result.shown().forces, result.job.recommend.spindle);
+  if (!weak.empty()) result.warnings.push_back(std::move(weak));
 }
 
 /// lobes.toml, and what a plan asks of it.
@@ -341,6 +301,39 @@ void read_cut(PlanResult& result) {
                                            .rule = error.parts().rule,
                                            .hint = error.parts().hint});
   }
+}
+
+/// Adds what the stages that ran have assumed, and the job itself.
+/// @param cell  that the job runs in; null: none
+void gather_assumed(PlanResult& result, const cell::Cell* cell) {
+  std::vector<Assumption> of_job;
+  if (result.recommends()) {
+    if (result.job.recommend.max_axial_depth_m <= 0.0) {
+      of_job.push_back({.what = "Depth of the cutter", .taken = "not limited", .key = "tool.max_axial_depth_mm"});
+    }
+    if (result.job.recommend.spindle.empty()) {
+      of_job.push_back({.what = "Torque and power of the spindle", .taken = "not limited", .key = "spindle.curve"});
+    }
+  }
+  if (result.decision) add_assumed(of_job, result.decision->assumed);
+  for (Assumption& one : of_job) one.file = result.job.file.filename().string();
+  add_assumed(result.assumed, result.job.assumed);
+  add_assumed(result.assumed, of_job);
+  if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
+  const PlannedProgram& shown = result.shown();
+  if (shown.forces) add_assumed(result.assumed, shown.forces->assumed);
+  if (shown.path) add_assumed(result.assumed, shown.path->smoothed.assumed);
+  if (cell != nullptr && shown.blocks && !cell->end_effector.mass_kg && process::knows_torques(*cell)) {
+    // What the drives bear is looked at, without the spindle's weight.
+    add_assumed(result.assumed, {{.what = "Mass on the flange",
+                                  .taken = "none",
+                                  .key = "tool.mass_kg",
+                                  .file = cell->path.filename().string()}});
+  }
+  if (cell == nullptr || result.job.program.empty()) return;
+  const Assumption unchecked = process::unchecked_collisions(*cell);
+  std::erase(result.assumed, unchecked);
+  if (!collisions_checked(result)) result.assumed.push_back(unchecked);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
+#include "robomill/monitor/files/monitor_plan.hpp"
 #include "robomill/process/blocks.hpp"
 #include "robomill/process/decide.hpp"
 #include "robomill/process/forces.hpp"
@@ -29,12 +30,6 @@
 
 namespace robomill::jobs {
 
-/// The files of a planned monitor, which stand in one folder.
-struct PlannedMonitor {
-  std::string toml = {};        ///< monitor.toml
-  std::string modes_json = {};  ///< monitor_modes.json; empty where no modes are planned
-};
-
 /// A program with what the job found of it. What the job did not ask for is empty.
 struct PlannedProgram {
   std::optional<process::ForcesResult> forces = {};   ///< of a job without a program, over one revolution
@@ -44,9 +39,9 @@ struct PlannedProgram {
 
 /// A program at the conditions that were decided.
 struct DecidedProgram : PlannedProgram {
-  std::optional<program::Rewritten> text = {};  ///< in its dialect; none: on its way it strikes something
-  std::string name = {};                        ///< of its file
-  std::optional<PlannedMonitor> monitor = {};   ///< none where there is no text
+  std::optional<program::Rewritten> text = {};          ///< in its dialect; none: on its way it strikes something
+  std::string name = {};                                ///< of its file
+  std::optional<monitor::PlannedMonitor> monitor = {};  ///< none where there is no text
 };
 
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.

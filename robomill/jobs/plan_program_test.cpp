@@ -12,8 +12,8 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/report/summary.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/robot/pose.hpp"
 #include "testing/process/programs.hpp"

@@ -15,7 +15,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/in_words.hpp"
-#include "robomill/jobs/report/pages.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/stability/surface_error.hpp"
 #include "testing/jobs/lobes_file.hpp"

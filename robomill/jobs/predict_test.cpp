@@ -12,8 +12,8 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/report/pages.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "testing/support.hpp"
 

@@ -14,6 +14,10 @@
 namespace robomill::jobs {
 namespace tools_test {
 
+using decision::ToolResult;
+using decision::tools_csv;
+using decision::tools_json;
+
 const std::string material = "youngs_modulus_gpa = 580\ndensity_kg_per_m3 = 14450\nloss_factor = 0.03\n";
 
 coupling::AssemblyFile assembly(const test::Folder& folder) {

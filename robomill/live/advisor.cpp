@@ -6,7 +6,10 @@
 #include <iterator>
 #include <vector>
 
+#include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/decision/finish.hpp"
+#include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::live {
 
@@ -19,7 +22,45 @@ constexpr double chart_reach = 0.05;
 /// Of the speed: a suggestion as near as that is the speed at which it chatters.
 constexpr double same_as_present = 0.01;
 
+/// Of each limit: whether the cut just above it is unstable without the wave of the tooth before.
+std::vector<bool> coupling_above(const stability::LobesProblem& problem, const stability::LobesResult& lobes,
+                                 Progress& progress) {
+  constexpr double above = 1.05;
+  std::vector<char> found(lobes.limit.size(), 0);
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    progress.check();
+    for (std::size_t i = begin; i < end; ++i) {
+      const stability::Limit& limit = lobes.limit[i];
+      if (limit.status != stability::Limit::Status::found || !(limit.axial_depth_m > 0.0)) continue;
+      const stability::ChatterMechanism mechanism = stability::chatter_mechanism(
+          problem,
+          {.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s, .axial_depth_m = above * limit.axial_depth_m});
+      found[i] = mechanism.kind == stability::ChatterMechanism::Kind::mode_coupling ? 1 : 0;
+    }
+  });
+  return {found.begin(), found.end()};
+}
+
+/// Of each limit: how deep forced vibration lets the cut go. Empty where the cut has no feed.
+std::vector<double> vibration_of(const stability::LobesProblem& problem, const stability::LobesResult& lobes,
+                                 Progress& progress) {
+  if (!(problem.milling.feed_per_tooth_m > 0.0) || lobes.axial_depth_m.size() == 0) return {};
+  std::vector<double> speeds;
+  speeds.reserve(lobes.limit.size());
+  for (const stability::Limit& limit : lobes.limit) speeds.push_back(limit.spindle_speed_rad_per_s);
+  return decision::vibration_depths(problem, speeds, lobes.axial_depth_m.maxCoeff(), progress);
+}
+
 }  // namespace
+
+void AdviceBasis::take_cut(const stability::LobesProblem& problem, const stability::LobesOptions& options,
+                           Progress& progress) {
+  if (!problem.dynamics.modes.empty()) modes = problem.dynamics;
+  workpiece = problem.workpiece_dynamics;
+  lobes = stability::compute_lobes(problem, options, progress);
+  vibration_depth_m = vibration_of(problem, *lobes, progress);
+  if (modes) mode_coupling = coupling_above(problem, *lobes, progress);
+}
 
 NoSpeed Advisor::no_speed(const monitor::Advice& advice, double spindle_speed_rad_per_s) const {
   if (advice.line_hz.size() > 1) return NoSpeed::ambiguous_alias;

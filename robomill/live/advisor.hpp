@@ -40,6 +40,11 @@ struct AdviceBasis {
   std::vector<std::string> warnings = {};  ///< on their numbers
   /// Of samples that no anti-alias filter is stated for: their lines may be folded. 0: a filter is stated.
   double unfiltered_sample_rate_hz = 0.0;
+
+  /// Takes the modes of a cut and computes its lobes, with what else limits it just above and below each limit.
+  /// @throws Interrupted when progress asks to stop
+  ROBOMILL_API void take_cut(const stability::LobesProblem& problem, const stability::LobesOptions& options,
+                             Progress& progress);
 };
 
 /// Names the mode that chatters, and speeds and a depth that are stable, or why no speed is.

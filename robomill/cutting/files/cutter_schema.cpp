@@ -50,7 +50,8 @@ const Schema<Cutter>& cutter_table() {
        of(&Cutter::mill,
           key("pitch_deg", &FlatEndMill::pitch_rad, "from tooth to tooth, where the teeth are unequally spaced")),
        of(&Cutter::mill,
-          key("runout_um", &FlatEndMill::runout_m, "offset of the cutter's axis from the spindle's").at_least(0.0)),
+          key("runout_um", &FlatEndMill::runout_m, "offset of the cutter's axis from the spindle's; needs the feed")
+              .at_least(0.0)),
        of(&Cutter::mill, key("runout_angle_deg", &FlatEndMill::runout_angle_rad,
                              "of that offset, clockwise from where the first tooth stands at the tip")),
        key("cutting_height_mm", &Cutter::cutting_height_m, "how far above the tip the edges reach; 0: two diameters")

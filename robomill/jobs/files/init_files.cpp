@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -9,14 +8,12 @@
 #include "robomill/base/error.hpp"
 #include "robomill/cell/files/known_arms.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records/records.hpp"
 #include "robomill/io/system/folder_change.hpp"
-#include "robomill/io/text.hpp"
 #include "robomill/io/toml/edit.hpp"
 #include "robomill/jobs/init.hpp"
-#include "robomill/jobs/init/example_hit.hpp"
 #include "robomill/jobs/init/hits_document.hpp"
 #include "robomill/jobs/init/template_lines.hpp"
+#include "robomill/modal/files/example_hit.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 
 namespace robomill::jobs {
@@ -24,10 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More files of a folder are not looked at, nor larger ones.
-constexpr std::size_t most_records = 200;
 constexpr std::size_t most_notes = 10;
-constexpr std::uintmax_t largest_record_bytes = std::uintmax_t{256} << 20;
 
 /// A link too, whatever it points to; but not what an earlier call, which was ended, has begun.
 bool is_there(const fs::path& path) {
@@ -35,109 +29,23 @@ bool is_there(const fs::path& path) {
   return fs::symlink_status(path, ignored).type() > fs::file_type::not_found && !io::is_unfinished(path);
 }
 
-/// Numbers in names count as numbers: hit_2 before hit_10.
-bool comes_before(const std::string& a, const std::string& b) {
-  const auto digit = [](char letter) { return std::isdigit(static_cast<unsigned char>(letter)) != 0; };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (digit(a[i]) && digit(b[j])) {
-      const auto number = [&digit](const std::string& text, std::size_t& at) {
-        while (at + 1 < text.size() && text[at] == '0' && digit(text[at + 1])) ++at;
-        const std::size_t begin = at;
-        while (at < text.size() && digit(text[at])) ++at;
-        return text.substr(begin, at - begin);
-      };
-      const std::string left = number(a, i), right = number(b, j);
-      if (left != right) return std::pair(left.size(), left) < std::pair(right.size(), right);
-    } else if (a[i] != b[j]) {
-      return a[i] < b[j];
-    } else {
-      ++i;
-      ++j;
-    }
-  }
-  return std::pair(a.size() - i, a) < std::pair(b.size() - j, b);
-}
-
-/// Files of a folder that are records by their ending, read here or not.
-std::vector<fs::path> records_in(const fs::path& folder) {
-  std::vector<fs::path> paths;
-  try {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      const io::Format format = io::format_of(entry.path());
-      const bool record = format == io::Format::csv || format == io::Format::text || format == io::Format::mat ||
-                          format == io::Format::uff || format == io::Format::wav ||
-                          !io::unread_record(entry.path()).what.empty();
-      if (record && entry.is_regular_file() && entry.file_size() <= largest_record_bytes) paths.push_back(entry.path());
-    }
-  } catch (const fs::filesystem_error& error) {
-    throw InvalidInput(folder.string(), "cannot be looked through: " + error.code().message());
-  }
-  std::ranges::sort(paths,
-                    [](const fs::path& a, const fs::path& b) { return comes_before(a.filename(), b.filename()); });
-  return paths;
-}
-
-FoundHits find_hits(const fs::path& data, const fs::path& folder) {
-  FoundHits found;
-  std::vector<fs::path> paths = records_in(data);
-  if (paths.size() > most_records) {
-    found.left_out.push_back(fmt::format("{} files more in {}", paths.size() - most_records, data.string()));
-    paths.resize(most_records);
-  }
-  for (const fs::path& path : paths) {
-    const std::string name = fs::absolute(path)
-                                 .lexically_normal()
-                                 .lexically_proximate(fs::absolute(folder).lexically_normal())
-                                 .generic_string();
-    if (path.filename() == example_hit_name) continue;  // made up by an earlier call
-    try {
-      const io::Record record = io::read_record(path);
-      modal::HitGuess guess = modal::guess_hit(record);
-      if (!guess.is_hit()) {
-        found.left_out.push_back(name +
-                                 ": no column looks like a hammer's force, one short pulse, beside a response. Of two "
-                                 "files, write force and "
-                                 "response beside each other in one CSV");
-        continue;
-      }
-      FoundHit hit{.file = name, .format = io::format_of(path), .sample_rate_hz = record.sample_rate_hz};
-      const std::vector<std::size_t> times = guess.with(modal::ColumnGuess::Role::time);
-      if (!times.empty()) {
-        const double per_unit = guess.columns[times.front()].si_per_unit;
-        const Eigen::VectorXd& time = record.columns[times.front()];
-        const double rounded_hz = io::rounded_sample_rate_of(time);
-        hit.rounded_time = rounded_hz > 0.0;
-        hit.sample_rate_hz = (hit.rounded_time ? rounded_hz : io::sample_rate_of(time, path.string())) / per_unit;
-      }
-      hit.guess = std::move(guess);
-      found.hits.push_back(std::move(hit));
-    } catch (const InvalidInput& error) {
-      const InvalidInput::Parts& parts = error.parts();
-      found.left_out.push_back(fmt::format("{}: {}{}{}", name, parts.rule, parts.hint.empty() ? "" : ". ", parts.hint));
-    }
-  }
-  keep_what_goes_together(found);
-  return found;
-}
-
 /// A record that is made up, unless an earlier call has made it.
 void add_example_hit(const fs::path& folder, InitFiles& out) {
-  const fs::path example = folder / example_hit_name;
+  const fs::path example = folder / modal::example_hit_name;
   if (is_there(example)) {
     out.kept.push_back(example);
   } else {
-    out.files.push_back({.path = example, .text = example_hit_csv()});
+    out.files.push_back({.path = example, .text = modal::example_hit_csv()});
   }
-  out.notes.push_back(fmt::format("{} is made up, so that the file runs.", example_hit_name));
+  out.notes.push_back(fmt::format("{} is made up, so that the file runs.", modal::example_hit_name));
 }
 
-void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, MeasuredAxes& measured) {
+void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, modal::MeasuredAxes& measured) {
   const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
-  FoundHits found;
+  modal::FoundHits found;
   const fs::path data = options.data.empty() ? folder : options.data;
   const bool looks = !options.example && (!options.data.empty() || fs::is_directory(data));
-  if (looks) found = find_hits(data, folder);
+  if (looks) found = modal::find_hits(data, folder, modal::example_hit_name);
   out.files.push_back({.path = path, .text = hits_document(found, options.example), .kind = Template::hits});
   if (options.example) {
     measured = {.excitations = {'x'}, .responses = {'x'}};
@@ -147,7 +55,7 @@ void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, 
         "No records of hits were found in {}: write [[hits]] for each one, or lay them there and begin again.",
         data.string()));
   } else {
-    measured = measured_axes(found);
+    measured = modal::measured_axes(found);
     const bool one = found.hits.size() == 1;
     out.notes.push_back(fmt::format("{} record{} of hits {} found in {}: what is guessed is marked, check it.",
                                     found.hits.size(), one ? "" : "s", one ? "was" : "were", data.string()));
@@ -161,8 +69,8 @@ void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, 
 }
 
 /// What a hits.toml that is there already knows; nothing where it is still to be filled in.
-MeasuredAxes axes_of(const fs::path& hits_toml) {
-  MeasuredAxes axes;
+modal::MeasuredAxes axes_of(const fs::path& hits_toml) {
+  modal::MeasuredAxes axes;
   const auto letter = [](const modal::Dof& dof) { return modal::to_string(modal::Dof{.axis = dof.axis}).front(); };
   try {
     for (const modal::Hit& hit : modal::read_hits(hits_toml).hits) {
@@ -178,7 +86,7 @@ MeasuredAxes axes_of(const fs::path& hits_toml) {
 void add_job(const InitOptions& options, const fs::path& path, InitFiles& out) {
   const fs::path hits = path.parent_path() / "hits.toml", lobes = path.parent_path() / "lobes.toml";
   NewFile& job = out.files.emplace_back(NewFile{.path = path, .kind = Template::job});
-  MeasuredAxes measured;
+  modal::MeasuredAxes measured;
   InitFiles beside;
   if (is_there(hits)) {
     out.kept.push_back(hits);
@@ -240,7 +148,7 @@ InitFiles init_files(const InitOptions& options) {
     throw InvalidInput("--data", "does not go with --example", "An example has a record of its own");
   }
   InitFiles out = {.example = options.example};
-  MeasuredAxes measured;
+  modal::MeasuredAxes measured;
   switch (options.kind) {
     case Template::job:
       add_job(options, path, out);
@@ -255,6 +163,11 @@ InitFiles init_files(const InitOptions& options) {
       out.files.push_back({.path = path, .text = template_text(options.kind, options.example), .kind = options.kind});
   }
   out.next = command_for(options.kind, path);
+  for (NewFile& file : out.files) {
+    if (options.schemas.empty() || !file.kind) continue;
+    const std::string name = fmt::format("{}.toml.schema.json", name_in(template_names, *file.kind));
+    file.text = fmt::format("#:schema {}\n{}", (options.schemas / name).string(), file.text);
+  }
   return out;
 }
 

@@ -8,24 +8,58 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/cutting/cut_limits.hpp"
+#include "robomill/decision/files/limits_schema.hpp"
 #include "robomill/io/records/records.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/io/usual_ranges.hpp"
+#include "robomill/jobs/files/job_schema.hpp"
 #include "robomill/process/files/decide_toml.hpp"
 #include "robomill/process/files/structure_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-/// A part of the job in a file of its own, or in the job itself.
-void read_part(io::TomlFile& file, const char* key, bool held, const Job& job, std::filesystem::path& part) {
-  if (!file.path(key, part) && held) part = job.file;
+using io::declared;
+using io::Holds;
+using io::key;
+using io::Schema;
+
+}  // namespace
+
+const Schema<Job>& job_table() {
+  static const Schema<Job> table(
+      "job", "what is planned, and the files of its parts",
+      {key("title", &Job::title, "heading of the report"),
+       key("hits", &Job::hits, "hits.toml: the structure from a tap test at the tool's tip"),
+       key("frf", &Job::frf, "or from measured FRFs, one file or several").or_one(),
+       key("frf_as", &Job::frf_as, "names of the FRFs in files that do not name them: xx, yy, …").or_one(),
+       key("modes", &Job::modes, "or from modes: modes.json"),
+       key("assembly", &Job::assembly, "or predicted: assembly.toml"),
+       key("joint", &Job::joint,
+           "joint.json, whose values replace those of the assembly's [joint], with a note; a warning names those that "
+           "are not identifiable"),
+       key("measured", &Job::measured,
+           "FRFs of the tip, compared with the prediction of the assembly; a warning where they differ by more than 20 "
+           "% of the measured"),
+       key("lobes", &Job::lobes, "lobes.toml: the cut, where the job does not contain it"),
+       key("forces", &Job::forces, "forces.toml, where the job has neither [stock] nor [forces]: forces are reported"),
+       key("cell", &Job::cell, "cell.toml, where the job has no [robot]: the robot that the cut deflects"),
+       key("program", &Job::program, "NC program: forces along it, and its trajectory where the cell has [smoothing]"),
+       declared<Job>("cuts", Holds::path, "a file of [[cuts]]"),
+       key("band_hz", &Job::band_hz, "from, to: of the fit").no_default().at_least(0.0).entries(2),
+       key("fit_modes", &Job::fit_modes, "exactly so many modes; 0: the fit chooses").at_least(0.0),
+       declared<Job>("equal_directions", Holds::boolean, "a direction that was not measured is like the other"),
+       declared<Job>("rigid_directions", Holds::word, "directions that were not measured and do not move", 1)
+           .words({"x", "y"})
+           .or_one()});
+  return table;
 }
+
+namespace {
 
 /// The structure of [dynamics], where the job names no other.
 void read_dynamics(io::TomlFile& file, Job& job) {
@@ -42,33 +76,21 @@ void read_dynamics(io::TomlFile& file, Job& job) {
 }
 
 void read_sources(io::TomlFile& file, Job& job) {
-  file.text("job.title", job.title);
-  file.path("job.hits", job.hits);
-  file.path("job.modes", job.modes);
-  read_part(file, "job.lobes", file.has("lobes"), job, job.lobes);
-  file.path("job.assembly", job.assembly);
-  if (file.path("job.joint", job.joint) && job.assembly.empty()) {
+  job_table().read(file, "job", job);
+  const auto contained = [&](std::filesystem::path& part, bool held) {
+    if (part.empty() && held) part = job.file;
+  };
+  contained(job.lobes, file.has("lobes"));
+  contained(job.forces, file.has("forces") || file.has("stock"));
+  contained(job.cell, std::ranges::any_of(cell::arm_keys, [&](const char* key) { return file.has(key); }));
+  if (!job.joint.empty() && job.assembly.empty()) {
     throw file.reject("job.joint", "goes with job.assembly", "It stands in place of the assembly's [joint]");
   }
-  read_part(file, "job.forces", file.has("forces") || file.has("stock"), job, job.forces);
-  const bool holds_arm = std::ranges::any_of(cell::arm_keys, [&](const char* key) { return file.has(key); });
-  read_part(file, "job.cell", holds_arm, job, job.cell);
-  file.path("job.program", job.program);
   if (job.forces.empty() && job.cell.empty() != job.program.empty()) {
     throw file.reject(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
                       "A program and a cell with [smoothing] make a trajectory");
   }
-  const bool measured = file.path("job.measured", job.measured);
-  file.paths("job.frf", job.frf);
-  file.texts("job.frf_as", job.frf_as);
-  std::vector<double> band;
-  if (file.numbers("job.band_hz", "band_hz", 1.0, band)) {
-    if (band.size() != 2) throw file.reject("job.band_hz", "must be [low, high]");
-    job.band_low_hz = band[0];
-    job.band_high_hz = band[1];
-  }
   process::missing_directions_table().read(file, "job", job.directions);
-  file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   if (!job.has_structure() && !job.lobes.empty()) read_dynamics(file, job);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1) + (job.own_modes.modes.empty() ? 0 : 1);
@@ -79,7 +101,7 @@ void read_sources(io::TomlFile& file, Job& job) {
             ? "None is given, nor modes, frf, x and y in [dynamics]; forces, cell and program together need none"
             : "Several are given");
   }
-  if (measured && job.assembly.empty()) {
+  if (!job.measured.empty() && job.assembly.empty()) {
     throw file.reject("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
   }
   for (const char* key : {"job.equal_directions", "job.rigid_directions"}) {
@@ -94,44 +116,10 @@ void read_sources(io::TomlFile& file, Job& job) {
   }
 }
 
-void read_limits(io::TomlFile& file, Job& job) {
-  file.number("tool.max_axial_depth_mm", "max_axial_depth_m", units::mm, job.recommend.max_axial_depth_m);
-  file.number("spindle.max_speed_rpm", "max_spindle_speed_rad_per_s", units::rpm,
-              job.recommend.max_spindle_speed_rad_per_s);
-  file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm,
-              job.recommend.min_spindle_speed_rad_per_s);
-  file.number("safety.depth_margin", "depth_margin", 1.0, job.recommend.depth_margin);
-  file.number("safety.speed_window", "speed_window", 1.0, job.recommend.speed_window);
-  file.number("finishing.max_surface_error_um", "max_surface_error_m", units::um, job.finish.max_surface_error_m);
-  file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.finish.max_deflection_m);
-  for (std::size_t i = 0; i < file.tables("spindle.curve"); ++i) {
-    const std::string row = "spindle.curve[" + std::to_string(i) + "].";
-    decision::SpindleCapacity point;
-    for (const char* key : {"speed_rpm", "torque_n_m", "power_kw"}) file.require(row + key);
-    const std::string member = "spindle[" + std::to_string(i + 1) + "].";
-    file.number(row + "speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, point.spindle_speed_rad_per_s);
-    file.number(row + "torque_n_m", member + "torque_n_m", 1.0, point.torque_n_m);
-    file.number(row + "power_kw", member + "power_w", units::kw, point.power_w);
-    job.recommend.spindle.push_back(point);
-  }
-}
-
-void read_cuts(io::TomlFile& file, Job& job) {
+void read_cuts(io::TomlFile& file, std::vector<decision::TestCut>& cuts) {
   for (std::size_t i = 0; i < file.tables("cuts"); ++i) {
-    const std::string row = "cuts[" + std::to_string(i) + "].";
-    const std::string member = "cuts[" + std::to_string(i + 1) + "].";
-    decision::TestCut cut;
-    file.require(row + "spindle_speed_rpm");
-    file.require(row + "axial_depth_mm");
-    file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
-    file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
-    file.choice(row + "result", decision::verdict_names, cut.result);
-    file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
-    file.path(row + "file", cut.file);
-    file.text(row + "column", cut.column);
-    file.number(row + "scale", member + "scale", 1.0, cut.scale);
-    file.number(row + "sample_rate_hz", member + "sample_rate_hz", 1.0, cut.sample_rate_hz);
-    job.cuts.push_back(cut);
+    decision::test_cut_table().read(file, "cuts[" + std::to_string(i) + "]", cuts.emplace_back(),
+                                    "cuts[" + std::to_string(i + 1) + "].");
   }
 }
 
@@ -153,15 +141,17 @@ Job read_job(const io::TomlSource& source) {
   io::TomlFile file(source);
   Job job{.file = source.path};
   read_sources(file, job);
-  read_limits(file, job);
+  for (const auto* table : {&decision::edges_table(), &decision::spindle_table(), &decision::safety_table()})
+    table->read(file, table->info().name, job.recommend);
+  decision::finishing_table().read(file, "finishing", job.finish);
   job.decide = process::read_decide(file, job.judges_blocks());
-  read_cuts(file, job);
+  read_cuts(file, job.cuts);
   std::filesystem::path more_cuts;
   if (file.path("job.cuts", more_cuts)) {
     io::TomlFile cuts(more_cuts);
     cuts.locate([&] {
       Job only_cuts;
-      read_cuts(cuts, only_cuts);
+      read_cuts(cuts, only_cuts.cuts);
       only_cuts.validate();
       job.cuts.insert(job.cuts.end(), only_cuts.cuts.begin(), only_cuts.cuts.end());
     });

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,9 +35,9 @@ struct Job {
   modal::ModalModel own_modes = {};     ///< x, y and z of [dynamics]
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
-  double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
-  modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
-  int fit_modes = 0;                             ///< 0: chosen by the fit
+  std::array<double, 2> band_hz = {};        ///< of the fit: from, to; 0, 0: the whole data
+  modal::MissingDirections directions = {};  ///< what an unmeasured direction is taken for
+  int fit_modes = 0;                         ///< 0: chosen by the fit
   decision::MachineLimits recommend = {};
   decision::FinishLimits finish = {};
   process::DecideOptions decide = {};  ///< of a job that judges blocks

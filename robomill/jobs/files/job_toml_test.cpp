@@ -113,6 +113,13 @@ TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   EXPECT_NE(rejection(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\npeaks_hz = [300, -5]\n")
                 .find("peaks_hz"),
             std::string::npos);
+  EXPECT_NE(rejection(source + "band_hz = [300]\n").find("job.toml:4: job.band_hz"), std::string::npos);
+  EXPECT_NE(rejection(source + "[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 2 }]\n")
+                .find("spindle.curve[1].power_kw: is missing"),
+            std::string::npos);
+  EXPECT_NE(rejection(source + "[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 2, power_kw = -1 }]\n")
+                .find("job.toml:5: spindle.curve[1].power_kw = -1 kW; must be >= 0"),
+            std::string::npos);
   EXPECT_NE(rejection(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
 }
 

@@ -93,7 +93,8 @@ std::string document(const TipPrediction& result, Format) {
   return tip_json(result);
 }
 std::string document(const ToolsResult& result, Format format) {
-  return format == Format::csv ? tools_csv(result.tools) : tools_json(result.tools, result.assembly.holder);
+  return format == Format::csv ? decision::tools_csv(result.tools)
+                               : decision::tools_json(result.tools, result.assembly.holder);
 }
 std::string document(const JointResult& result, Format format) {
   return format == Format::csv ? coupling::joint_csv(result.fit) : coupling::joint_json(result.fit);
@@ -151,6 +152,49 @@ void write_document(const std::filesystem::path& path, const StiffnessResult& re
 void write_document(const std::filesystem::path& path, const CalibrateResult& result) {
   if (io::format_of(path) == Format::json) return io::write_file(path, monitor::calibration_json(result.calibration));
   if (result.found()) io::write_file(path, calibrated_toml(result, path));
+}
+
+std::string shortfall(const ModesResult& result) {
+  if (result.fit.status != modal::FitResult::Status::converged) return "the fit did not converge";
+  return result.fit.usable() ? "" : "the modes do not describe the FRFs";
+}
+
+std::string shortfall(const ToolsResult& result) {
+  const auto is_done = [](const decision::ToolResult& tool) { return tool.failure.empty() && tool.no_cut.empty(); };
+  return std::ranges::all_of(result.tools, is_done) ? "" : "not every tool has a result; its row says why";
+}
+
+std::string shortfall(const JointResult& result) {
+  return result.fit.status == coupling::JointFitResult::Status::converged ? ""
+                                                                          : "the joint was not found to convergence";
+}
+
+std::string shortfall(const SimulateResult& result) {
+  if (!result.simulation.resolved) return "the simulation's steps do not resolve the vibration";
+  return result.simulation.verdict == simulation::Verdict::undecided
+             ? "the cut is too short to decide between stable and chatter"
+             : "";
+}
+
+std::string shortfall(const CoefficientsResult& result) {
+  if (!(result.fit.tangential.cutting_n_per_m2 > 0.0)) {
+    return "the tangential coefficient is not above 0: are these the forces on the tool?";
+  }
+  return result.fit.status == cutting::SlotFit::Status::identified ? "" : "one feed does not determine the edge force";
+}
+
+std::string shortfall(const StiffnessResult& result) {
+  if (!result.converged()) {
+    const bool line = io::format_of(result.output) == io::Format::toml;
+    return "the joint stiffness was not found to convergence" +
+           (line ? fmt::format("; {} was not written", result.output.string()) : std::string());
+  }
+  const bool seen = std::ranges::any_of(result.found.joints, [](const auto& joint) { return joint.identifiable; });
+  return seen ? "" : "these loads determine the stiffness of no joint";
+}
+
+std::string shortfall(const cell::CellCheck& result) {
+  return result.placement.works() ? "" : "the tool does not come to the workpiece where it stands";
 }
 
 }  // namespace robomill::jobs

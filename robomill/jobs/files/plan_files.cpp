@@ -6,9 +6,9 @@
 
 #include "robomill/io/system/folder_change.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
-#include "robomill/jobs/plan/monitor.hpp"
-#include "robomill/jobs/report/pages.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "robomill/monitor/files/monitor_plan.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -38,10 +38,10 @@ class PlanFolder {
   void commit(const std::string& program) {
     std::error_code ignored;
     const bool earlier = std::filesystem::is_regular_file(folder_ / plan_name, ignored);
-    for (const std::string& name :
-         {std::string("tip.uff"), std::string("modes.json"), std::string("lobes.json"), std::string("forces.csv"),
-          std::string("blocks.csv"), std::string("blocks.json"), std::string("smooth.json"),
-          std::string("trajectory.csv"), std::string(monitor_modes_name), std::string(monitor_name), program}) {
+    for (const std::string& name : {std::string("tip.uff"), std::string("modes.json"), std::string("lobes.json"),
+                                    std::string("forces.csv"), std::string("blocks.csv"), std::string("blocks.json"),
+                                    std::string("smooth.json"), std::string("trajectory.csv"),
+                                    std::string(monitor::monitor_modes_name), std::string(monitor_name), program}) {
       if (earlier && !name.empty() && std::ranges::find(names_, name) == names_.end()) change_.remove(name);
     }
     change_.commit();
@@ -112,7 +112,7 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   }
   if (result.decided && result.decided->text) files.write(result.decided->name, result.decided->text->text);
   if (result.decided && result.decided->monitor) {
-    files.write(monitor_modes_name, result.decided->monitor->modes_json);
+    files.write(monitor::monitor_modes_name, result.decided->monitor->modes_json);
     files.write(monitor_name, result.decided->monitor->toml);
   }
   if (shown.path) {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/decision/files/result_schema.hpp"
 #include "robomill/modal/files/frf_schema.hpp"
-#include "robomill/modal/files/mode_schema.hpp"
 #include "robomill/modal/files/modes_schema.hpp"
 #include "robomill/page/thin.hpp"
 #include "robomill/path/files/smooth_object.hpp"
@@ -23,10 +23,6 @@
 namespace robomill::jobs {
 namespace {
 
-using decision::ComparedCut;
-using decision::Operation;
-using io::add_rows;
-using io::if_positive;
 using io::Json;
 using io::key;
 using io::number;
@@ -37,49 +33,6 @@ using process::Fact;
 
 Json text_or_null(std::string_view text) {
   return text.empty() ? Json() : Json(text);
-}
-
-const Schema<ComparedCut>& cut_table() {
-  static const Schema<ComparedCut> table(
-      "compared_cut", "a test cut beside its prediction",
-      {key(
-           "spindle_speed_rpm", [](const ComparedCut& cut) { return cut.cut.spindle_speed_rad_per_s; }, "of the cut"),
-       key(
-           "axial_depth_mm", [](const ComparedCut& cut) { return cut.cut.axial_depth_m; }, "of the cut"),
-       key(
-           "result", [](const ComparedCut& cut) { return cut.cut.result; }, decision::verdict_names,
-           "of the cut; none: not known")
-           .nullable(),
-       key("predicted", &ComparedCut::predicted, decision::verdict_names, "none: not known").nullable(),
-       key("limit_depth_mm", &ComparedCut::limit_depth_m, "predicted at its speed").nullable(),
-       key("agrees", &ComparedCut::agrees, "none: nothing to compare").nullable(),
-       key("note", &ComparedCut::note, "in words")},
-      Use::written);
-  return table;
-}
-
-/// The limit in one direction of the feed.
-struct DirectionView {
-  const decision::FeedDirections* directions = nullptr;
-  Eigen::Index index = 0;
-};
-
-const Schema<DirectionView>& direction_table() {
-  using View = DirectionView;
-  static const Schema<View> table(
-      "feed_direction", "the limit in one direction of the feed",
-      {key(
-           "feed_direction_deg", [](const View& v) { return v.directions->direction_rad(v.index); }, "from x"),
-       key(
-           "lowest_limit_mm", [](const View& v) { return v.directions->lowest_limit_m(v.index); }, "over all speeds")
-           .nullable(),
-       where([](const View& v) { return v.directions->limit_at_speed_m.size() > 0; },
-             key(
-                 "limit_at_speed_mm", [](const View& v) { return v.directions->limit_at_speed_m(v.index); },
-                 "at the recommended speed")
-                 .nullable())},
-      Use::written);
-  return table;
 }
 
 std::vector<Fact> facts_of(const PlanResult& result) {
@@ -93,85 +46,6 @@ std::vector<Fact> facts_of(const PlanResult& result) {
                                    cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
                                    cut.coefficients.radial_n_per_m2 / units::n_per_mm2)},
           {"Feed direction", fmt::format("{:.4g}° from x", result.cut.problem.feed_direction_rad / units::deg)}};
-}
-
-const Schema<decision::DepthCurve>& curve_table() {
-  using decision::DepthCurve;
-  static const Schema<DepthCurve> table(
-      "depth_curve", "depths that something else than chatter limits",
-      {key("label", &DepthCurve::label, "what limits"),
-       key("spindle_speed_rpm", &DepthCurve::spindle_speed_rad_per_s, "spindle speeds").exact(),
-       key("axial_depth_mm", &DepthCurve::axial_depth_m, "at each").exact()},
-      Use::written);
-  return table;
-}
-
-const Schema<decision::PartLimits>& pair_table() {
-  using decision::PartLimits;
-  static const Schema<PartLimits> table(
-      "part_limits", "limits of a part of the modes",
-      {key("label", &PartLimits::label, "which"), key("modes", &PartLimits::modes, "their numbers"),
-       key("spindle_speed_rpm", &PartLimits::spindle_speed_rad_per_s, "spindle speeds").exact(),
-       key("limit_depth_mm", &PartLimits::limit_depth_m, "at each").nullable()},
-      Use::written);
-  return table;
-}
-
-const Schema<decision::Agreement>& agreement_table() {
-  using decision::Agreement;
-  static const Schema<Agreement> table(
-      "agreement", "how many test cuts came out as predicted",
-      {key("agree", &Agreement::agree, "as predicted"), key("disagree", &Agreement::disagree, "not as predicted"),
-       key("not_compared", &Agreement::not_compared, "nothing to compare")},
-      Use::written);
-  return table;
-}
-
-const Schema<decision::LimitShare>& share_table() {
-  using decision::LimitShare;
-  static const Schema<LimitShare> table("limit_share",
-                                        "each mode's share of the speeds at which some mode limits the depth",
-                                        {key("tool", &LimitShare::tool, "one a mode").exact(),
-                                         key("workpiece", &LimitShare::workpiece, "one a mode").exact()},
-                                        Use::written);
-  return table;
-}
-
-const Schema<decision::FinishLimits>& finishing_table() {
-  using decision::FinishLimits;
-  static const Schema<FinishLimits> table(
-      "finishing", "what a finishing pass must keep",
-      {key(
-           "max_surface_error_um", [](const FinishLimits& f) { return if_positive(f.max_surface_error_m); },
-           "none: not asked for")
-           .nullable(),
-       key(
-           "max_deflection_um", [](const FinishLimits& f) { return if_positive(f.max_deflection_m); },
-           "none: not asked for")
-           .nullable()},
-      Use::written);
-  return table;
-}
-
-const Schema<stability::ForcedVibration>& vibration_table() {
-  using stability::ForcedVibration;
-  static const Schema<ForcedVibration> table(
-      "forced_vibration", "the steady vibration of the tip",
-      [] {
-        std::vector<Row<ForcedVibration>> rows = {
-            key("amplitude_um", &ForcedVibration::amplitude_m, "half the peak to peak, where that is greatest"),
-            key("harmonic", &ForcedVibration::harmonic, "in which the tip moves most"),
-            key(
-                "of", [](const ForcedVibration& v) { return v.of_tooth_passing ? "tooth passing" : "rotation"; },
-                "what it is a multiple of")
-                .words({"tooth passing", "rotation"}),
-            key("frequency_hz", &ForcedVibration::frequency_hz, "of that harmonic"),
-            key("harmonic_um", &ForcedVibration::harmonic_m, "of that harmonic alone").nullable()};
-        add_rows(rows, modal::mode_keys<ForcedVibration>("that moves most in it"));
-        return rows;
-      }(),
-      Use::written);
-  return table;
 }
 
 /// The plan with or without the documents of its stages.
@@ -196,20 +70,20 @@ std::vector<Row<PlanResult>> decision_keys() {
             key(
                 "facts", [](const Plan& plan) { return facts_of(plan); }, process::fact_table(), "in words")),
       key(
-          "agreement", [](const Plan& plan) { return decision::agreement(plan.cuts); }, agreement_table(),
+          "agreement", [](const Plan& plan) { return decision::agreement(plan.cuts); }, decision::agreement_table(),
           "of the test cuts"),
       key(
-          "recommended", [](const Plan& plan) { return plan.recommendation.recommended; }, operation_table(),
+          "recommended", [](const Plan& plan) { return plan.recommendation.recommended; }, decision::operation_table(),
           "none: see reason")
           .nullable(),
       key(
-          "alternatives", [](const Plan& plan) { return plan.recommendation.alternatives; }, operation_table(),
-          "by falling removal rate"),
+          "alternatives", [](const Plan& plan) { return plan.recommendation.alternatives; },
+          decision::operation_table(), "by falling removal rate"),
       where([](const Plan& plan) { return !plan.recommendation.recommended; },
             key(
                 "reason", [](const Plan& plan) { return plan.recommendation.reason; }, "why there is none")),
       key(
-          "finishing", [](const Plan& plan) { return plan.job.finish; }, finishing_table(), "of the job"),
+          "finishing", [](const Plan& plan) { return plan.job.finish; }, decision::asked_finish_table(), "of the job"),
       key(
           "other_limits",
           [](const Plan& plan) {
@@ -217,15 +91,15 @@ std::vector<Row<PlanResult>> decision_keys() {
                        ? decision::other_limits(plan.cut.problem.milling, plan.job.recommend, plan.cut.options)
                        : std::vector<decision::DepthCurve>();
           },
-          curve_table(), "beside chatter"),
-      key("pairs", &Plan::pairs, pair_table(), "of neighbouring modes"),
+          decision::curve_table(), "beside chatter"),
+      key("pairs", &Plan::pairs, decision::pair_table(), "of neighbouring modes"),
       key(
           "limit_share",
           [](const Plan& plan) {
             return decision::limit_share(plan.lobes.limit, plan.model, plan.cut.problem.workpiece_dynamics);
           },
-          share_table(), "of the modes"),
-      key("cuts", &Plan::cuts, cut_table(), "test cuts"),
+          decision::share_table(), "of the modes"),
+      key("cuts", &Plan::cuts, decision::cut_table(), "test cuts"),
       where([](const Plan& plan) { return plan.feed_directions.has_value(); },
             key(
                 "feed_direction_deg", [](const Plan& plan) { return plan.cut.problem.feed_direction_rad; },
@@ -234,12 +108,12 @@ std::vector<Row<PlanResult>> decision_keys() {
             key(
                 "feed_directions",
                 [](const Plan& plan) {
-                  std::vector<DirectionView> out;
+                  std::vector<decision::DirectionView> out;
                   for (Eigen::Index i = 0; i < plan.feed_directions->direction_rad.size(); ++i)
                     out.push_back({&*plan.feed_directions, i});
                   return out;
                 },
-                direction_table(), "the limit in each")),
+                decision::direction_table(), "the limit in each")),
       where([](const Plan& plan) { return plan.hits.has_value(); },
             key("hit_directions", &Plan::hit_directions, "of each hit")),
       key(
@@ -291,48 +165,6 @@ std::vector<Row<PlanResult>> stage_keys() {
 }
 
 }  // namespace
-
-const Schema<Operation>& operation_table() {
-  static const Schema<Operation> table(
-      "operation", "a speed and a depth to cut at",
-      [] {
-        std::vector<Row<Operation>> rows = {
-            key("spindle_speed_rpm", &Operation::spindle_speed_rad_per_s, "spindle speed"),
-            key("axial_depth_mm", &Operation::axial_depth_m, "axial depth"),
-            key("feed_per_tooth_mm", &Operation::feed_per_tooth_m, "feed per tooth"),
-            key("margin", &Operation::margin, "1 - depth / limit"),
-            key(
-                "cutting_speed_m_per_min", [](const Operation& op) { return op.cutting_speed_m_per_s * units::minute; },
-                "of the tooth")
-                .in_unit(),
-            key(
-                "feed_mm_per_min", [](const Operation& op) { return op.feed_m_per_s / units::mm * units::minute; },
-                "of the program")
-                .in_unit(),
-            key("removal_rate_mm3_per_s", &Operation::removal_rate_m3_per_s, "material a second"),
-            key(
-                "limited_by", [](const Operation& op) { return decision::limited_by_text(op); }, "in words"),
-            key("window_limit_mm", &Operation::limit_depth_m, "lowest limit over the speed window").nullable(),
-            key(
-                "window_chatter_frequency_hz", [](const Operation& op) { return if_positive(op.chatter_frequency_hz); },
-                "at that limit; none: nothing chatters")
-                .nullable(),
-            key("torque_n_m", &Operation::torque_n_m, "mean"),
-            key("power_w", &Operation::power_w, "mean"),
-            key("surface_error_um", &Operation::surface_error_m, "of the forced vibration; none: not computed")
-                .nullable(),
-            key("peak_deflection_um", &Operation::peak_deflection_m, "of the forced vibration").nullable(),
-            key(
-                "forced_vibration",
-                [](const Operation& op) { return std::isfinite(op.vibration.amplitude_m) ? &op.vibration : nullptr; },
-                vibration_table(), "none: not computed")
-                .nullable()};
-        add_rows(rows, modal::mode_keys<Operation>("that chatters at the window's limit"));
-        return rows;
-      }(),
-      Use::written);
-  return table;
-}
 
 Json recordings_json(const PlanResult& result) {
   Json list = Json::array();

@@ -8,7 +8,6 @@
 
 namespace robomill::jobs {
 
-[[nodiscard]] const io::Schema<decision::Operation>& operation_table();
 /// What the job itself came to: plan.json without the documents of its stages.
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
 /// Spectra of the recorded test cuts.

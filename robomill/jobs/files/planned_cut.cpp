@@ -12,7 +12,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
-#include "robomill/jobs/plan/lobes.hpp"
+#include "robomill/jobs/plan_stages.hpp"
 
 namespace robomill::jobs {
 namespace {

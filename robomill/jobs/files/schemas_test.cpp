@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robomill/io/file.hpp"
+#include "robomill/io/json.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -50,6 +51,20 @@ TEST(Schemas, TablesOfTheDocsAreTheirs) {
 
 TEST(Schemas, OfAnUnknownDocumentNamesTheKnownOnes) {
   EXPECT_NE(test::rejection([] { static_cast<void>(schema_text("lobe.json")); }).find("lobes.json"), std::string::npos);
+}
+
+// One table of a document, whichever of them; several readers know a part of [tool].
+TEST(Schemas, OfTomlDocumentsHaveTheTablesOfTheirReaders) {
+  const std::string table = schema_table("job.toml spindle tool");
+  for (const char* key : {"`spindle.curve[].power_kw` | kW | required", "`tool.teeth`", "`tool.max_axial_depth_mm`"})
+    EXPECT_NE(table.find(key), std::string::npos) << key << table;
+  EXPECT_EQ(table.find("safety"), std::string::npos);
+  for (const char* name : {"lobes.toml", "job.toml", "forces.toml", "cell.toml", "hits.toml", "monitor.toml"}) {
+    const io::Json keys = io::Json::parse(schema_text(name))["properties"];
+    for (const char* key : {"include", "tool", "lobes", "job", "robot", "hits", "signal"})
+      EXPECT_TRUE(keys.contains(key)) << name << key;
+    EXPECT_FALSE(keys.contains("document")) << name;
+  }
 }
 
 }  // namespace schemas_test

@@ -23,6 +23,9 @@ namespace robomill::jobs {
 namespace {
 
 using modal::ColumnGuess;
+using modal::FoundHit;
+using modal::FoundHits;
+using modal::MeasuredAxes;
 using modal::ResponseKind;
 using Role = ColumnGuess::Role;
 
@@ -36,11 +39,6 @@ std::string column_text(const std::string& name) {
 
 std::string guessed_from(std::string_view from) {
   return fmt::format("guessed from {}: check", from);
-}
-
-const ColumnGuess* first_of(const FoundHit& hit, Role role) {
-  const std::vector<std::size_t> places = hit.guess.with(role);
-  return places.empty() ? nullptr : &hit.guess.columns[places.front()];
 }
 
 /// What sensitivities are per: the key's ending and its size in SI.
@@ -60,8 +58,8 @@ class Acquisition {
   Acquisition(const FoundHit& hit, std::string document) : hit_(hit), text_(std::move(document)) {}
 
   std::string filled() {
-    const ColumnGuess& force = *first_of(hit_, Role::force);
-    const ColumnGuess& response = *first_of(hit_, Role::response);
+    const ColumnGuess& force = *hit_.first(Role::force);
+    const ColumnGuess& response = *hit_.first(Role::response);
     if (response.kind != ResponseKind::acceleration) {
       const char* const kind = response.kind == ResponseKind::velocity ? "\"velocity\"" : "\"displacement\"";
       set("response", kind, guessed_from(response.from));
@@ -101,7 +99,7 @@ class Acquisition {
     }
   }
   void rate() {
-    const ColumnGuess* const time = first_of(hit_, Role::time);
+    const ColumnGuess* const time = hit_.first(Role::time);
     if (time != nullptr && (time->si_per_unit != 1.0 || hit_.rounded_time)) {
       set("sample_rate_hz", fmt::format("{:.9g}", hit_.sample_rate_hz),
           fmt::format("guessed from the column {}, which is {}: check", time->name,
@@ -117,11 +115,11 @@ class Acquisition {
 
 std::string hit_table(const FoundHit& hit) {
   std::string text = "[[hits]]\n" + template_line("file", io::toml_quoted(hit.file), "");
-  const ColumnGuess* const time = first_of(hit, Role::time);
+  const ColumnGuess* const time = hit.first(Role::time);
   if (time != nullptr && time->si_per_unit == 1.0 && !hit.rounded_time) {
     text += template_line("time", column_text(time->name), guessed_from(time->from));
   }
-  const ColumnGuess& force = *first_of(hit, Role::force);
+  const ColumnGuess& force = *hit.first(Role::force);
   text += template_line("force", column_text(force.name), guessed_from(force.from));
   text += template_line(
       "force_direction", io::toml_quoted(hit.guess.force_direction),
@@ -131,8 +129,8 @@ std::string hit_table(const FoundHit& hit) {
     const ColumnGuess& column = hit.guess.columns[i];
     responses += fmt::format("{}{} = {}", responses.empty() ? "" : ", ", column.axis, column_text(column.name));
   }
-  return text + template_line("responses", fmt::format("{{ {} }}", responses),
-                              guessed_from(first_of(hit, Role::response)->from));
+  return text +
+         template_line("responses", fmt::format("{{ {} }}", responses), guessed_from(hit.first(Role::response)->from));
 }
 
 /// A list with one value a joint that the template shows behind a #.
@@ -158,61 +156,7 @@ std::string values_of(const robot::Arm& arm, const ShownList& list) {
   return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
-bool same_unit(const FoundHit& a, const FoundHit& b, Role role) {
-  const ColumnGuess &left = *first_of(a, role), &right = *first_of(b, role);
-  return (a.format == io::Format::wav) == (b.format == io::Format::wav) && left.volts == right.volts &&
-         left.si_per_unit == right.si_per_unit && left.kind == right.kind;
-}
-
-/// What a column seems to be in, in words.
-std::string unit_text(const FoundHit& hit, Role role) {
-  const ColumnGuess& column = *first_of(hit, role);
-  if (hit.format == io::Format::wav) return "the scale of a WAV";
-  if (!column.unit.empty()) return column.unit;
-  if (role == Role::force) return "N";
-  return column.kind == ResponseKind::acceleration ? "m/s^2" : column.kind == ResponseKind::velocity ? "m/s" : "m";
-}
-
-/// Why two records cannot stand in one hits.toml; empty: they can.
-std::string difference(const FoundHit& hit, const FoundHit& other) {
-  constexpr double same_rate = 1e-3;
-  const double rate_hz = hit.sample_rate_hz, other_hz = other.sample_rate_hz;
-  if (rate_hz > 0.0 && other_hz > 0.0 && std::abs(rate_hz - other_hz) > same_rate * other_hz) {
-    return fmt::format("its sample rate is {:.6g} Hz, that of {} {:.6g} Hz, and all hits must have one", rate_hz,
-                       other.file, other_hz);
-  }
-  for (const auto& [role, what] : {std::pair{Role::force, "force"}, {Role::response, "response"}}) {
-    if (same_unit(hit, other, role)) continue;
-    return fmt::format("its {} is in {}, that of {} in {}, and hits.toml has one unit for all", what,
-                       unit_text(hit, role), other.file, unit_text(other, role));
-  }
-  return {};
-}
-
 }  // namespace
-
-void keep_what_goes_together(FoundHits& found) {
-  const std::vector<FoundHit> hits = std::move(found.hits);
-  found.hits.clear();
-  std::ptrdiff_t most = 0;
-  const FoundHit* common = nullptr;
-  for (const FoundHit& hit : hits) {
-    const auto like =
-        std::ranges::count_if(hits, [&](const FoundHit& other) { return difference(other, hit).empty(); });
-    if (like > most) {
-      most = like;
-      common = &hit;
-    }
-  }
-  for (const FoundHit& hit : hits) {
-    const std::string reason = difference(hit, *common);
-    if (reason.empty()) {
-      found.hits.push_back(hit);
-    } else {
-      found.left_out.push_back(fmt::format("{}: {}", hit.file, reason));
-    }
-  }
-}
 
 std::string hits_document(const FoundHits& found, bool example) {
   std::string text(raw_template(Template::hits));
@@ -221,15 +165,6 @@ std::string hits_document(const FoundHits& found, bool example) {
   text = Acquisition(found.hits.front(), std::move(text)).filled();
   for (std::size_t i = 0; i < found.hits.size(); ++i) text += (i == 0 ? "" : "\n") + hit_table(found.hits[i]);
   return rendered(text, example);
-}
-
-MeasuredAxes measured_axes(const FoundHits& found) {
-  MeasuredAxes axes;
-  for (const FoundHit& hit : found.hits) {
-    axes.excitations.insert(hit.guess.force_direction.back());
-    for (const std::size_t i : hit.guess.with(Role::response)) axes.responses.insert(hit.guess.columns[i].axis);
-  }
-  return axes;
 }
 
 namespace {

@@ -1,4 +1,4 @@
-#include "robomill/jobs/interview.hpp"
+#include "robomill/jobs/init.hpp"
 
 #include <fmt/format.h>
 
@@ -166,16 +166,16 @@ std::string Interview::State::prompt() const {
   if (asked.id == "feed") text += recommended_feeds();
   std::string shown = usual(asked);
   if (shown.empty()) shown = "not known";
-  if (asked.kind == Answer::quantity && shown != "not known") shown += fmt::format(" {}", unit_of(asked.quantity));
-  if (asked.kind == Answer::quantity && shown == "not known") text += fmt::format(" ({})", unit_of(asked.quantity));
+  if (asked.kind == Answer::quantity && shown != "not known") shown += fmt::format(" {}", io::unit_of(asked.quantity));
+  if (asked.kind == Answer::quantity && shown == "not known") text += fmt::format(" ({})", io::unit_of(asked.quantity));
   return fmt::format("{} [{}]: ", text, shown);
 }
 
 double Interview::State::checked(const Question& asked, std::string_view answer, double value) const {
-  const std::string_view unit = unit_of(asked.quantity);
+  const std::string_view unit = io::unit_of(asked.quantity);
   const auto outside = [&](double low, double high) {
-    return rejected(answer,
-                    fmt::format("must lie between {} and {} {}", quantity_text(low), quantity_text(high), unit));
+    return rejected(
+        answer, fmt::format("must lie between {} and {} {}", io::quantity_text(low), io::quantity_text(high), unit));
   };
   if (!(value >= asked.low && value <= asked.high)) throw outside(asked.low, asked.high);
   if (asked.id == "highest speed" && !(value > number("lowest speed", 0.0))) {
@@ -207,16 +207,16 @@ std::string Interview::State::value_of(const Question& asked, std::string_view a
       throw rejected(answer, "is a material of which no force coefficients are known here");
     }
     case Answer::count: {
-      const double value = parse_quantity(answer, Quantity::number);
+      const double value = io::parse_quantity(answer, Quantity::number);
       if (value != std::floor(value)) throw rejected(answer, "must be a whole number");
-      return quantity_text(checked(asked, answer, value));
+      return io::quantity_text(checked(asked, answer, value));
     }
     case Answer::quantity:
       break;
   }
   const std::string_view plain =
       asked.quantity == Quantity::length ? std::string_view(length_unit) : std::string_view();
-  return quantity_text(checked(asked, answer, parse_quantity(answer, asked.quantity, plain)));
+  return io::quantity_text(checked(asked, answer, io::parse_quantity(answer, asked.quantity, plain)));
 }
 
 bool Interview::State::applies(const Question& asked) const {
@@ -305,7 +305,7 @@ void Interview::State::take(std::string_view text) {
     value = value_of(asked, text);
   } else if (!value.empty() && asked.kind == Answer::quantity) {
     // A default may not go with the answers before: a radial depth above the diameter.
-    value = quantity_text(checked(asked, value, parse_quantity(value, asked.quantity)));
+    value = io::quantity_text(checked(asked, value, io::parse_quantity(value, asked.quantity)));
   }
   if (asked.kind == Answer::length_unit) length_unit = value;
   if (!value.empty()) {
@@ -346,8 +346,8 @@ void Interview::State::finish() {
     const double kw = number("power", power_kw(number("torque", 0.0), high));
     const double torque = number("torque", kw / power_kw(1.0, low));
     const auto point = [&](double rpm) {
-      return fmt::format("{{ speed_rpm = {}, torque_n_m = {}, power_kw = {} }}", quantity_text(rpm),
-                         quantity_text(torque), quantity_text(kw));
+      return fmt::format("{{ speed_rpm = {}, torque_n_m = {}, power_kw = {} }}", io::quantity_text(rpm),
+                         io::quantity_text(torque), io::quantity_text(kw));
     };
     set(Template::job, "spindle.curve", fmt::format("[{}, {}]", point(low), point(high)));
   }

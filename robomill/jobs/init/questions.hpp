@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/jobs/files/shop_units.hpp"
+#include "robomill/io/shop_units.hpp"
 #include "robomill/jobs/init.hpp"
 
 namespace robomill::jobs {
+
+using Quantity = io::ShopQuantity;
 
 /// Where an answer goes.
 struct Target {

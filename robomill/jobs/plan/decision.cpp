@@ -1,4 +1,4 @@
-#include "robomill/jobs/plan/decision.hpp"
+#include "robomill/jobs/plan_stages.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/plan/monitor.hpp"
 #include "robomill/process/written_program.hpp"
 #include "robomill/version.hpp"
 
@@ -90,10 +89,10 @@ process::ProgrammedPath programmed_path(const PlanResult& result) {
 }
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.
-PlannedMonitor monitor_of(const PlanResult& result, const process::DynamicsAt& dynamics) {
+monitor::PlannedMonitor monitor_of(const PlanResult& result, const process::DynamicsAt& dynamics) {
   const DecidedProgram& decided = *result.decided;
   const program::Program& program = program_of(decided);
-  MonitorPlan plan = {.teeth = decided.forces->cut.cutter.mill.teeth};
+  monitor::MonitorPlan plan = {.teeth = decided.forces->cut.cutter.mill.teeth};
   for (const process::DecidedLines& lines : result.decision->stretches) {
     plan.speeds.push_back({.spindle_speed_rad_per_s = lines.spindle_speed_rad_per_s,
                            .line = static_cast<int>(program.blocks[lines.first_block].line)});

@@ -1,4 +1,4 @@
-#include "robomill/jobs/plan/lobes.hpp"
+#include "robomill/jobs/plan_stages.hpp"
 
 #include <fmt/format.h>
 

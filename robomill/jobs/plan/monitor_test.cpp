@@ -1,4 +1,4 @@
-#include "robomill/jobs/plan/monitor.hpp"
+#include "robomill/monitor/files/monitor_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,6 +21,10 @@
 namespace robomill::jobs {
 namespace monitor_plan_test {
 
+using monitor::monitor_modes_name;
+using monitor::MonitorPlan;
+using monitor::plan_monitor;
+using monitor::PlannedMonitor;
 using robomill::test::field_of;
 
 /// A tool that chatters at 905 Hz, its second mode. No multiple of 80 Hz leads from there to the first one.

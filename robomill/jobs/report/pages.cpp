@@ -1,4 +1,4 @@
-#include "robomill/jobs/report/pages.hpp"
+#include "robomill/jobs/outputs.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -94,19 +94,15 @@ page::Report page_of(const TipPrediction& result) {
   return page;
 }
 
-page::Report page_of(const std::vector<ToolResult>& results, const coupling::AssemblyFile& assembly,
-                     const std::optional<LobesFile>& cut) {
-  page::Report page = titled("Tools in one holder", summary(results, assembly, cut));
-  page.tools = tools_json(results, assembly.holder);
+page::Report page_of(const ToolsResult& result) {
+  page::Report page = titled("Tools in one holder", summary(result));
+  const coupling::AssemblyFile& assembly = result.assembly;
+  page.tools = decision::tools_json(result.tools, assembly.holder);
   page.notes = assembly.notes;
   if (assembly.holder) add_texts(page.notes, assembly.holder->notes);
   page.assumed = assembly.assumed;
-  if (cut) add_assumed(page.assumed, assumed_of(*cut, CutUse::stability));
+  if (result.cut) add_assumed(page.assumed, assumed_of(*result.cut, CutUse::stability));
   return page;
-}
-
-page::Report page_of(const ToolsResult& result) {
-  return page_of(result.tools, result.assembly, result.cut);
 }
 
 page::Report page_of(const JointResult& result) {

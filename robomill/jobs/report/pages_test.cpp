@@ -1,4 +1,4 @@
-#include "robomill/jobs/report/pages.hpp"
+#include "robomill/jobs/outputs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/lobes.hpp"
-#include "robomill/jobs/report/summary.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/simulate.hpp"
 
 // A cut: its stability, its vibration, its coefficients.

@@ -15,8 +15,8 @@
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/modes.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/predict.hpp"
-#include "robomill/jobs/report/summary.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/weak_modes.hpp"
@@ -97,7 +97,7 @@ void add_holder(std::string& out, const coupling::AssemblyFile& file) {
 }
 
 /// What becomes of a tool in the cut.
-std::string cut_text(const ToolResult& tool) {
+std::string cut_text(const decision::ToolResult& tool) {
   if (!tool.recommendation) return tool.no_cut.empty() ? "-" : printable(tool.no_cut);
   if (!tool.recommendation->recommended) return tool.recommendation->reason;
   const decision::Operation& best = *tool.recommendation->recommended;
@@ -189,12 +189,11 @@ std::string summary(const TipPrediction& result) {
   return out + assumed_text(file.assumed);
 }
 
-std::string summary(const std::vector<ToolResult>& results, const coupling::AssemblyFile& assembly,
-                    const std::optional<LobesFile>& cut) {
+std::string summary(const ToolsResult& result) {
   std::string out;
   io::append(out, "{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
              "µm/N", "modes", "lowest mm", "rpm", "depth mm");
-  for (const ToolResult& tool : results) {
+  for (const decision::ToolResult& tool : result.tools) {
     io::append(out, "{:<20} {:>5} {:>9.4g} ", printable(tool.name), tool.teeth, tool.overhang_m / units::mm);
     if (!tool.failure.empty()) {
       io::append(out, "{}\n", printable(tool.failure));
@@ -205,15 +204,11 @@ std::string summary(const std::vector<ToolResult>& results, const coupling::Asse
         tool.lowest_limit_m ? fmt::format("{:.4g}", *tool.lowest_limit_m / units::mm) : std::string("-");
     io::append(out, "{:>10} {}\n", lowest, cut_text(tool));
   }
-  add_holder(out, assembly);
-  io::add_notes(out, assembly.notes, "Note: ");
-  std::vector<Assumption> assumed = assembly.assumed;
-  if (cut) add_assumed(assumed, assumed_of(*cut, CutUse::stability));
+  add_holder(out, result.assembly);
+  io::add_notes(out, result.assembly.notes, "Note: ");
+  std::vector<Assumption> assumed = result.assembly.assumed;
+  if (result.cut) add_assumed(assumed, assumed_of(*result.cut, CutUse::stability));
   return out + assumed_text(assumed);
-}
-
-std::string summary(const ToolsResult& result) {
-  return summary(result.tools, result.assembly, result.cut);
 }
 
 std::string summary(const JointResult& result) {

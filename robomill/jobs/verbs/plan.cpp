@@ -1,3 +1,5 @@
+#include <iterator>
+
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/verbs/records.hpp"
 
@@ -17,8 +19,6 @@ Outcome run_plan_verb(const VerbJob& job, Progress& progress) {
           .plan = plan->judging ? plan : nullptr};
 }
 
-}  // namespace
-
 Verb plan_verb() {
   return {.name = "plan",
           .button = "Run the job",
@@ -31,6 +31,23 @@ Verb plan_verb() {
           .options = {flag_option("accept_fit", "go on with modes whose relative error is 20 % or more"),
                       posture_option(), seed_option()},
           .run = &run_plan_verb};
+}
+
+}  // namespace
+
+std::span<const Verb> verbs() {
+  static const std::vector<Verb> all = [] {
+    std::vector<Verb> out = {plan_verb()};
+    const auto add = [&out](std::vector<Verb> more) {
+      out.insert(out.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+    };
+    add(structure_verbs());
+    add(cut_verbs());
+    add(robot_verbs());
+    out.push_back(calibrate_verb());
+    return out;
+  }();
+  return all;
 }
 
 }  // namespace robomill::jobs

@@ -5,8 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "robomill/jobs/report/pages.hpp"
-#include "robomill/jobs/report/summary.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "robomill/jobs/verbs/new_option.hpp"
 
@@ -15,7 +14,6 @@ namespace robomill::jobs {
 [[nodiscard]] std::vector<Verb> structure_verbs();  ///< hits, FRFs, modes, the tool in its holder
 [[nodiscard]] std::vector<Verb> cut_verbs();        ///< stability, motion and forces of a cut
 [[nodiscard]] std::vector<Verb> robot_verbs();      ///< the robot under load, and along a program
-[[nodiscard]] Verb plan_verb();
 [[nodiscard]] Verb calibrate_verb();
 
 [[nodiscard]] inline VerbOption seed_option() {
@@ -43,9 +41,10 @@ Outcome outcome_of(Result result, std::string json = {}) {
 }
 
 /// Writes what was found where the job asks for it.
-template <class Result>
-Outcome finished(const VerbJob& job, Result result) {
-  if (!job.output.empty()) write_document(job.output, result);
+/// @param how  more of write_document
+template <class Result, class... How>
+Outcome finished(const VerbJob& job, Result result, const How&... how) {
+  if (!job.output.empty()) write_document(job.output, result, how...);
   std::string json = job.wants_json ? document(result, io::Format::json) : std::string();
   return outcome_of(std::move(result), std::move(json));
 }

@@ -20,10 +20,7 @@ VerbOption assembly_input() {
 }
 
 Outcome run_frf_verb(const VerbJob& job, Progress& progress) {
-  FrfJobResult result = run_frf(job.input(), progress);
-  if (!job.output.empty()) write_document(job.output, result, {.binary_uff = job.flag("binary")});
-  std::string json = job.wants_json ? document(result, io::Format::json) : std::string();
-  return outcome_of(std::move(result), std::move(json));
+  return finished(job, run_frf(job.input(), progress), modal::FrfWriteOptions{.binary_uff = job.flag("binary")});
 }
 
 Outcome run_modes_verb(const VerbJob& job, Progress& progress) {
@@ -56,7 +53,7 @@ Outcome run_couple_verb(const VerbJob& job, Progress& progress) {
 Outcome run_tools_verb(const VerbJob& job, Progress& progress) {
   ToolsResult result = run_tools(
       {.assembly = job.input(), .tools = job.file("tools"), .lobes = job.file("lobes"), .seed = job.seed()}, progress);
-  if (job.has("frfs")) write_tips(job.file("frfs"), result.tools);
+  if (job.has("frfs")) decision::write_tips(job.file("frfs"), result.tools);
   return finished(job, std::move(result));
 }
 

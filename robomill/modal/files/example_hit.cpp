@@ -1,4 +1,4 @@
-#include "robomill/jobs/init/example_hit.hpp"
+#include "robomill/modal/files/example_hit.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -6,7 +6,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/io/system/append.hpp"
 
-namespace robomill::jobs {
+namespace robomill::modal {
 namespace made_up_hit {
 namespace {
 
@@ -63,4 +63,4 @@ std::string example_hit_csv() {
   return text;
 }
 
-}  // namespace robomill::jobs
+}  // namespace robomill::modal

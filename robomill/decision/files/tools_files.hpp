@@ -2,10 +2,10 @@
 #include <optional>
 #include <vector>
 
+#include "robomill/decision/tools.hpp"
 #include "robomill/io/schema.hpp"
-#include "robomill/jobs/tools.hpp"
 
-namespace robomill::jobs {
+namespace robomill::decision {
 
 /// Rows of a list of tools and the holder that was measured for them.
 struct ToolsView {
@@ -15,4 +15,4 @@ struct ToolsView {
 /// The table of a list of tools as JSON.
 [[nodiscard]] const io::Schema<ToolsView>& tools_table();
 
-}  // namespace robomill::jobs
+}  // namespace robomill::decision

@@ -1,11 +1,20 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "robomill/base/progress.hpp"
 #include "robomill/jobs/plan.hpp"
 
+// What run_job() is made of.
+
 namespace robomill::jobs {
+
+/// Decides the conditions of the job's program, judged already: `decision`, and where it found conditions `decided`.
+/// The program as it is loses its trajectory.
+/// @param folder  as of run_job
+void decide_conditions(PlanResult& result, const cell::Cell& cell, const process::DynamicsAt& dynamics,
+                       const process::BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress);
 
 /// Speeds that the spindle has and the chart does not are searched too.
 /// @return a sentence on it for the user; empty where the chart has them all

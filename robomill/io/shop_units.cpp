@@ -1,4 +1,4 @@
-#include "robomill/jobs/files/shop_units.hpp"
+#include "robomill/io/shop_units.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::jobs {
+namespace robomill::io {
 namespace {
 
 constexpr double foot_m = 12.0 * units::inch;
@@ -21,52 +21,52 @@ constexpr double metric_horsepower = 75.0 * units::standard_gravity;
 /// A name as squeezed() leaves it, and its size in the unit of the quantity's keys. The first of a quantity is that
 /// unit.
 struct ShopUnit {
-  Quantity quantity;
+  ShopQuantity quantity;
   std::string_view name, shown;
   double factor;
 };
 constexpr ShopUnit shop_units[] = {
-    {Quantity::length, "mm", "mm", 1.0},
-    {Quantity::length, "in", "in", units::inch / units::mm},
-    {Quantity::length, "inch", "", units::inch / units::mm},
-    {Quantity::length, "inches", "", units::inch / units::mm},
-    {Quantity::length, "\"", "", units::inch / units::mm},
-    {Quantity::length, "thou", "thou", 1e-3 * units::inch / units::mm},
-    {Quantity::length, "um", "um", units::um / units::mm},
-    {Quantity::length, "cm", "cm", 10.0},
-    {Quantity::length, "m", "m", 1.0 / units::mm},
-    {Quantity::angle, "deg", "deg", 1.0},
-    {Quantity::angle, "degrees", "", 1.0},
-    {Quantity::angle, "°", "", 1.0},
-    {Quantity::angle, "rad", "rad", 1.0 / units::deg},
-    {Quantity::spindle_speed, "rpm", "rpm", 1.0},
-    {Quantity::spindle_speed, "1/min", "1/min", 1.0},
-    {Quantity::spindle_speed, "min-1", "", 1.0},
-    {Quantity::spindle_speed, "u/min", "", 1.0},
-    {Quantity::spindle_speed, "hz", "Hz", 60.0},
-    {Quantity::torque, "nm", "Nm", 1.0},
-    {Quantity::torque, "ncm", "Ncm", 0.01},
-    {Quantity::torque, "ftlbf", "ft lbf", foot_m* units::pound_force},
-    {Quantity::torque, "ftlb", "", foot_m* units::pound_force},
-    {Quantity::torque, "lbft", "", foot_m* units::pound_force},
-    {Quantity::torque, "inlbf", "in lbf", units::inch* units::pound_force},
-    {Quantity::torque, "inlb", "", units::inch* units::pound_force},
-    {Quantity::power, "kw", "kW", 1.0},
-    {Quantity::power, "w", "W", 1.0 / units::kw},
-    {Quantity::power, "hp", "hp", units::horsepower / units::kw},
-    {Quantity::power, "ps", "PS", metric_horsepower / units::kw},
-    {Quantity::force_sensitivity, "mv/n", "mV/N", 1.0},
-    {Quantity::force_sensitivity, "v/n", "V/N", 1e3},
-    {Quantity::force_sensitivity, "mv/kn", "mV/kN", 1e-3},
-    {Quantity::force_sensitivity, "mv/lbf", "mV/lbf", 1.0 / units::pound_force},
-    {Quantity::force_sensitivity, "mv/lb", "", 1.0 / units::pound_force},
-    {Quantity::acceleration_sensitivity, "mv/g", "mV/g", 1.0},
-    {Quantity::acceleration_sensitivity, "v/g", "V/g", 1e3},
-    {Quantity::acceleration_sensitivity, "mv/m/s2", "mV/(m/s2)", units::standard_gravity},
-    {Quantity::acceleration_sensitivity, "mv/ms-2", "", units::standard_gravity},
-    {Quantity::mass, "kg", "kg", 1.0},
-    {Quantity::mass, "g", "g", 1e-3},
-    {Quantity::mass, "lb", "lb", units::pound_force / units::standard_gravity},
+    {ShopQuantity::length, "mm", "mm", 1.0},
+    {ShopQuantity::length, "in", "in", units::inch / units::mm},
+    {ShopQuantity::length, "inch", "", units::inch / units::mm},
+    {ShopQuantity::length, "inches", "", units::inch / units::mm},
+    {ShopQuantity::length, "\"", "", units::inch / units::mm},
+    {ShopQuantity::length, "thou", "thou", 1e-3 * units::inch / units::mm},
+    {ShopQuantity::length, "um", "um", units::um / units::mm},
+    {ShopQuantity::length, "cm", "cm", 10.0},
+    {ShopQuantity::length, "m", "m", 1.0 / units::mm},
+    {ShopQuantity::angle, "deg", "deg", 1.0},
+    {ShopQuantity::angle, "degrees", "", 1.0},
+    {ShopQuantity::angle, "°", "", 1.0},
+    {ShopQuantity::angle, "rad", "rad", 1.0 / units::deg},
+    {ShopQuantity::spindle_speed, "rpm", "rpm", 1.0},
+    {ShopQuantity::spindle_speed, "1/min", "1/min", 1.0},
+    {ShopQuantity::spindle_speed, "min-1", "", 1.0},
+    {ShopQuantity::spindle_speed, "u/min", "", 1.0},
+    {ShopQuantity::spindle_speed, "hz", "Hz", 60.0},
+    {ShopQuantity::torque, "nm", "Nm", 1.0},
+    {ShopQuantity::torque, "ncm", "Ncm", 0.01},
+    {ShopQuantity::torque, "ftlbf", "ft lbf", foot_m* units::pound_force},
+    {ShopQuantity::torque, "ftlb", "", foot_m* units::pound_force},
+    {ShopQuantity::torque, "lbft", "", foot_m* units::pound_force},
+    {ShopQuantity::torque, "inlbf", "in lbf", units::inch* units::pound_force},
+    {ShopQuantity::torque, "inlb", "", units::inch* units::pound_force},
+    {ShopQuantity::power, "kw", "kW", 1.0},
+    {ShopQuantity::power, "w", "W", 1.0 / units::kw},
+    {ShopQuantity::power, "hp", "hp", units::horsepower / units::kw},
+    {ShopQuantity::power, "ps", "PS", metric_horsepower / units::kw},
+    {ShopQuantity::force_sensitivity, "mv/n", "mV/N", 1.0},
+    {ShopQuantity::force_sensitivity, "v/n", "V/N", 1e3},
+    {ShopQuantity::force_sensitivity, "mv/kn", "mV/kN", 1e-3},
+    {ShopQuantity::force_sensitivity, "mv/lbf", "mV/lbf", 1.0 / units::pound_force},
+    {ShopQuantity::force_sensitivity, "mv/lb", "", 1.0 / units::pound_force},
+    {ShopQuantity::acceleration_sensitivity, "mv/g", "mV/g", 1.0},
+    {ShopQuantity::acceleration_sensitivity, "v/g", "V/g", 1e3},
+    {ShopQuantity::acceleration_sensitivity, "mv/m/s2", "mV/(m/s2)", units::standard_gravity},
+    {ShopQuantity::acceleration_sensitivity, "mv/ms-2", "", units::standard_gravity},
+    {ShopQuantity::mass, "kg", "kg", 1.0},
+    {ShopQuantity::mass, "g", "g", 1e-3},
+    {ShopQuantity::mass, "lb", "lb", units::pound_force / units::standard_gravity},
 };
 
 /// Lower case, without blanks, brackets, points and signs of multiplication or power; ² is 2 and µ is u.
@@ -84,25 +84,25 @@ std::string squeezed(std::string_view text) {
   return out;
 }
 
-std::string_view article_and_name(Quantity quantity) {
+std::string_view article_and_name(ShopQuantity quantity) {
   switch (quantity) {
-    case Quantity::length:
+    case ShopQuantity::length:
       return "a length";
-    case Quantity::angle:
+    case ShopQuantity::angle:
       return "an angle";
-    case Quantity::spindle_speed:
+    case ShopQuantity::spindle_speed:
       return "a spindle speed";
-    case Quantity::torque:
+    case ShopQuantity::torque:
       return "a torque";
-    case Quantity::power:
+    case ShopQuantity::power:
       return "a power";
-    case Quantity::force_sensitivity:
+    case ShopQuantity::force_sensitivity:
       return "the sensitivity of a force sensor";
-    case Quantity::acceleration_sensitivity:
+    case ShopQuantity::acceleration_sensitivity:
       return "the sensitivity of an accelerometer";
-    case Quantity::mass:
+    case ShopQuantity::mass:
       return "a mass";
-    case Quantity::number:
+    case ShopQuantity::number:
       break;
   }
   return "a number";
@@ -110,15 +110,14 @@ std::string_view article_and_name(Quantity quantity) {
 
 /// "12", "0,5", "1/4", "1 1/4".
 std::optional<double> number_in(std::string_view text) {
-  text = io::trimmed(text);
+  text = trimmed(text);
   const std::size_t slash = text.find('/');
-  if (slash == std::string_view::npos) return io::parse_cell(text);
+  if (slash == std::string_view::npos) return parse_cell(text);
   const std::size_t blank = text.find(' ');
   const bool mixed = blank < slash;
-  const std::optional<double> whole = mixed ? io::parse_cell(text.substr(0, blank)) : 0.0;
-  const std::optional<double> above =
-      io::parse_cell(io::trimmed(text.substr(mixed ? blank : 0, slash - (mixed ? blank : 0))));
-  const std::optional<double> below = io::parse_cell(io::trimmed(text.substr(slash + 1)));
+  const std::optional<double> whole = mixed ? parse_cell(text.substr(0, blank)) : 0.0;
+  const std::optional<double> above = parse_cell(trimmed(text.substr(mixed ? blank : 0, slash - (mixed ? blank : 0))));
+  const std::optional<double> below = parse_cell(trimmed(text.substr(slash + 1)));
   if (!whole || !above || !below || !(*below > 0.0)) return std::nullopt;
   return *whole + *above / *below;
 }
@@ -149,15 +148,15 @@ void require_clear_commas(std::string_view answer, std::string_view number) {
 
 }  // namespace
 
-std::string_view unit_of(Quantity quantity) {
+std::string_view unit_of(ShopQuantity quantity) {
   for (const ShopUnit& unit : shop_units) {
     if (unit.quantity == quantity) return unit.shown;
   }
   return {};
 }
 
-double parse_quantity(std::string_view text, Quantity quantity, std::string_view plain_unit) {
-  text = io::trimmed(text);
+double parse_quantity(std::string_view text, ShopQuantity quantity, std::string_view plain_unit) {
+  text = trimmed(text);
   // The number reaches as far as one can be read; "1e3", "1/4" and "1/min" part so too.
   std::size_t end = text.size();
   std::optional<double> number;
@@ -172,7 +171,7 @@ double parse_quantity(std::string_view text, Quantity quantity, std::string_view
     if (number && std::isfinite(*number) && candidate.name == unit) return *number * candidate.factor;
     if (!candidate.shown.empty()) known += fmt::format("{}{}", known.empty() ? "" : ", ", candidate.shown);
   }
-  if (quantity == Quantity::number && number && std::isfinite(*number) && unit.empty()) return *number;
+  if (quantity == ShopQuantity::number && number && std::isfinite(*number) && unit.empty()) return *number;
   throw InvalidInput(fmt::format("\"{}\"", text), fmt::format("is not {}", article_and_name(quantity)),
                      known.empty() ? "" : fmt::format("A number with one of {}, or alone", known));
 }
@@ -181,4 +180,4 @@ std::string quantity_text(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-}  // namespace robomill::jobs
+}  // namespace robomill::io

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-namespace robomill::jobs {
+namespace robomill::modal {
 
 /// What the made-up hits.toml names.
 inline constexpr const char* example_hit_name = "example_hit_x.csv";
@@ -10,4 +10,4 @@ inline constexpr const char* example_hit_name = "example_hit_x.csv";
 /// `time_s,force_n,ax_m_per_s2`.
 [[nodiscard]] std::string example_hit_csv();
 
-}  // namespace robomill::jobs
+}  // namespace robomill::modal

@@ -1,3 +1,5 @@
+#include "robomill/decision/files/tools_files.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,15 +8,14 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/decision/files/result_schema.hpp"
+#include "robomill/decision/tools.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/plan_json.hpp"
-#include "robomill/jobs/files/tools_files.hpp"
-#include "robomill/jobs/plan.hpp"
-#include "robomill/jobs/tools.hpp"
+#include "robomill/io/json.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
-namespace robomill::jobs {
+namespace robomill::decision {
 namespace {
 
 using io::key;
@@ -22,7 +23,7 @@ using io::Row;
 using io::Schema;
 using io::Use;
 
-const decision::Operation* best_of(const ToolResult& tool) {
+const Operation* best_of(const ToolResult& tool) {
   return tool.recommendation && tool.recommendation->recommended ? &*tool.recommendation->recommended : nullptr;
 }
 
@@ -45,11 +46,11 @@ std::string cell(double value, double unit, bool known = true) {
 }
 
 /// What a row has of plan.json's operation.
-const Schema<decision::Operation>& tool_operation_table() {
-  static const Schema<decision::Operation> table(
+const Schema<Operation>& tool_operation_table() {
+  static const Schema<Operation> table(
       "tool_operation", "the best speed and depth of a tool",
       [] {
-        std::vector<Row<decision::Operation>> rows;
+        std::vector<Row<Operation>> rows;
         for (const char* const name :
              {"spindle_speed_rpm", "axial_depth_mm", "window_limit_mm", "removal_rate_mm3_per_s", "limited_by"}) {
           rows.push_back(*std::ranges::find_if(operation_table().rows(),
@@ -132,7 +133,7 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
       "lowest_limit_mm,spindle_speed_rpm,axial_depth_mm,removal_rate_mm3_per_s,remark\n";
   for (const ToolResult& tool : results) {
     const bool done = tool.failure.empty();
-    const decision::Operation* best = best_of(tool);
+    const Operation* best = best_of(tool);
     // The mode that the peak belongs to.
     const auto nearest =
         std::min_element(tool.modes.modes.begin(), tool.modes.modes.end(), [&](const auto& a, const auto& b) {
@@ -182,4 +183,4 @@ void write_tips(const std::filesystem::path& folder, const std::vector<ToolResul
   }
 }
 
-}  // namespace robomill::jobs
+}  // namespace robomill::decision

@@ -1,4 +1,4 @@
-#include "robomill/jobs/plan/monitor.hpp"
+#include "robomill/monitor/files/monitor_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
-namespace robomill::jobs {
+namespace robomill::monitor {
 namespace {
 
 /// More changes of speed are counted, not listed.
@@ -23,8 +23,8 @@ bool same_speed(const SpeedStretch& a, const SpeedStretch& b) {
 }
 
 /// The file without its paths, which no validation needs.
-monitor::MonitorFile monitor_file(const MonitorPlan& plan) {
-  monitor::MonitorFile file;
+MonitorFile monitor_file(const MonitorPlan& plan) {
+  MonitorFile file;
   file.columns.channels = plan.channels;
   file.columns.sample_rate_hz = plan.sample_rate_hz;
   file.options.sample_rate_hz = plan.sample_rate_hz;
@@ -36,7 +36,7 @@ monitor::MonitorFile monitor_file(const MonitorPlan& plan) {
   for (const SpeedStretch& each : plan.speeds) {
     min_speed_rad_per_s = std::min(min_speed_rad_per_s, 0.5 * each.spindle_speed_rad_per_s);
   }
-  min_speed_rad_per_s = std::max(min_speed_rad_per_s, monitor::slowest_min_speed_rad_per_s);
+  min_speed_rad_per_s = std::max(min_speed_rad_per_s, slowest_min_speed_rad_per_s);
   if (plan.one_speed()) file.options.spindle_speed_rad_per_s = plan.speeds.front().spindle_speed_rad_per_s;
   return file;
 }
@@ -93,19 +93,19 @@ void MonitorPlan::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
   if (modes && !modes_file.empty()) throw InvalidInput("modes_file", "must not stand beside modes");
   if (modes_line < 0) throw InvalidInput("modes_line", modes_line, "", "must be >= 0");
-  const monitor::MonitorFile file = monitor_file(*this);
+  const MonitorFile file = monitor_file(*this);
   file.columns.validate();
   file.options.validate();
 }
 
 PlannedMonitor plan_monitor(const MonitorPlan& plan) {
   plan.validate();
-  monitor::MonitorFile file = monitor_file(plan);
+  MonitorFile file = monitor_file(plan);
   file.modes = plan.modes ? std::filesystem::path(monitor_modes_name) : plan.modes_file;
   file.lobes = plan.lobes_file;
-  PlannedMonitor out{.toml = monitor::monitor_toml(file, remarks_of(plan))};
+  PlannedMonitor out{.toml = monitor_toml(file, remarks_of(plan))};
   if (plan.modes) out.modes_json = modal::modes_json(*plan.modes);
   return out;
 }
 
-}  // namespace robomill::jobs
+}  // namespace robomill::monitor

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "robomill/jobs/plan.hpp"
+#include "robomill/base/export.hpp"
 #include "robomill/modal/modes.hpp"
 
-namespace robomill::jobs {
+// Method: robomill/monitor/README.md, "Planned monitors (`files/monitor_plan.hpp`)"
+
+namespace robomill::monitor {
 
 /// The spindle turns at one speed from a line of the program on.
 struct SpeedStretch {
@@ -16,7 +18,7 @@ struct SpeedStretch {
 };
 
 /// A decided cut, as its monitor must know it.
-struct MonitorPlan {
+struct ROBOMILL_API MonitorPlan {
   std::vector<SpeedStretch> speeds = {};  ///< at least one, in the order of the program
   int teeth = 0;                          ///< of the cutter, in [1, 64]; required
   /// modes.json and lobes.toml of the cut, relative to the folder of monitor.toml; empty: none.
@@ -37,11 +39,17 @@ struct MonitorPlan {
 /// The name of MonitorPlan::modes beside monitor.toml.
 inline constexpr const char* monitor_modes_name = "monitor_modes.json";
 
+/// The files of a planned monitor, which stand in one folder.
+struct PlannedMonitor {
+  std::string toml = {};        ///< monitor.toml
+  std::string modes_json = {};  ///< monitor_modes.json; empty where no modes are planned
+};
+
 /// monitor.toml of a decided cut, which `robomill monitor` runs with: the default detector, comb-cusum, with speed and
 /// teeth of the cut. Of several speeds none is written: a column spindle_speed_rpm or the blocks of MQTT carry the one
 /// that runs, and remarks list them by line. What only the machine knows (channels, sample rate, filter) is as by
 /// default, and a remark says so.
 /// @throws InvalidInput as validate
-[[nodiscard]] PlannedMonitor plan_monitor(const MonitorPlan& plan);
+[[nodiscard]] ROBOMILL_API PlannedMonitor plan_monitor(const MonitorPlan& plan);
 
-}  // namespace robomill::jobs
+}  // namespace robomill::monitor
