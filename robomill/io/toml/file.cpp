@@ -29,16 +29,6 @@ struct Row {
   std::vector<double> si;  ///< values as the caller got them; without the key, what the caller had before
 };
 
-/// The key, or the innermost table around it that the file has; none where that is the file itself.
-const toml::node* nearest(const toml::table& root, std::string_view key) {
-  for (;;) {
-    if (const toml::node* node = find_node(root, key)) return node;
-    const std::size_t end = key.find_last_of(".[");
-    if (end == std::string_view::npos) return nullptr;
-    key = key.substr(0, end);
-  }
-}
-
 std::optional<double> finite_number(const toml::node& node) {
   std::optional<double> number;
   if (const toml::value<std::int64_t>* whole = node.as_integer()) number = static_cast<double>(whole->get());
@@ -62,34 +52,6 @@ std::size_t match(std::string_view field, const std::string& member) {
   const bool tail =
       field.size() > member.size() && field.ends_with(member) && field[field.size() - member.size() - 1] == '.';
   return whole || tail ? member.size() : 0;
-}
-
-/// Puts a value at a path below a node, with the tables that are missing on the way; false where there is no way.
-bool put(toml::node& node, std::string_view path, const toml::node& value) {
-  toml::node* below = nullptr;
-  if (path.starts_with('[')) {
-    const std::optional<std::size_t> index = take_index(path);
-    toml::array* array = node.as_array();
-    if (!index || array == nullptr || *index >= array->size()) return false;
-    if (path.empty()) {
-      array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(*index), value);
-      return true;
-    }
-    below = array->get(*index);
-  } else {
-    const std::string_view name = path.substr(0, path.find_first_of(".["));
-    toml::table* table = node.as_table();
-    if (name.empty() || table == nullptr) return false;
-    path.remove_prefix(name.size());
-    if (path.empty()) {
-      table->insert_or_assign(name, value);
-      return true;
-    }
-    if (path.front() == '.') table->insert(name, toml::table{});  // unless it is there
-    below = table->get(name);
-  }
-  if (path.front() == '.') path.remove_prefix(1);
-  return below != nullptr && !path.empty() && put(*below, path, value);
 }
 
 }  // namespace
@@ -274,7 +236,7 @@ bool TomlFile::path(std::string_view key, std::filesystem::path& out) {
 }
 
 std::filesystem::path TomlFile::file_of(std::string_view key) const {
-  return state_->file_of(nearest(state_->root, key));
+  return state_->file_of(nearest_node(state_->root, key));
 }
 
 std::filesystem::path TomlFile::file_of_part(std::string_view key, std::string_view table) const {
@@ -332,7 +294,7 @@ void TomlFile::require(std::string_view key, std::string_view hint) const {
   if (has(key)) return;
   state_->asked.add(key);
   if (const std::string other = state_->written_for(key); !other.empty()) throw state_->unknown(other);
-  InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
+  InvalidInput::Parts parts{.where = state_->where(nearest_node(state_->root, key)),
                             .field = shown_key(key),
                             .rule = "is missing",
                             .hint = std::string(hint)};
@@ -342,7 +304,7 @@ void TomlFile::require(std::string_view key, std::string_view hint) const {
 
 InvalidInput TomlFile::reject(std::string_view key, std::string rule, std::string hint) const {
   const toml::node* node = find_node(state_->root, key);
-  InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
+  InvalidInput::Parts parts{.where = state_->where(nearest_node(state_->root, key)),
                             .field = shown_key(key),
                             .rule = std::move(rule),
                             .hint = std::move(hint)};
@@ -380,7 +342,7 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
   }
   const bool entry = parts.field.back() == ']' && row->member.back() != ']';
   const std::string index = entry ? parts.field.substr(parts.field.rfind('[')) : "";
-  parts.where = state_->where(nearest(state_->root, row->key));
+  parts.where = state_->where(nearest_node(state_->root, row->key));
   parts.field = shown_key(row->key) + index;
   if (parts.number && !parts.unit.ends_with("entries")) {
     parts.number = round_15(*parts.number / row->factor);

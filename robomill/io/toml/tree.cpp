@@ -97,6 +97,42 @@ const toml::node* find_node(const toml::table& root, std::string_view path) {
   return node;
 }
 
+const toml::node* nearest_node(const toml::table& root, std::string_view key) {
+  for (;;) {
+    if (const toml::node* node = find_node(root, key)) return node;
+    const std::size_t end = key.find_last_of(".[");
+    if (end == std::string_view::npos) return nullptr;
+    key = key.substr(0, end);
+  }
+}
+
+bool put(toml::node& node, std::string_view path, const toml::node& value) {
+  toml::node* below = nullptr;
+  if (path.starts_with('[')) {
+    const std::optional<std::size_t> index = take_index(path);
+    toml::array* array = node.as_array();
+    if (!index || array == nullptr || *index >= array->size()) return false;
+    if (path.empty()) {
+      array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(*index), value);
+      return true;
+    }
+    below = array->get(*index);
+  } else {
+    const std::string_view name = path.substr(0, path.find_first_of(".["));
+    toml::table* table = node.as_table();
+    if (name.empty() || table == nullptr) return false;
+    path.remove_prefix(name.size());
+    if (path.empty()) {
+      table->insert_or_assign(name, value);
+      return true;
+    }
+    if (path.front() == '.') table->insert(name, toml::table{});  // unless it is there
+    below = table->get(name);
+  }
+  if (path.front() == '.') path.remove_prefix(1);
+  return below != nullptr && !path.empty() && put(*below, path, value);
+}
+
 std::string value_text(const toml::node& node) {
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";

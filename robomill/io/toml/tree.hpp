@@ -27,6 +27,12 @@ std::optional<std::size_t> take_index(std::string_view& path);
 /// What a path leads to: "hits[0].file", tables of an array from 0; null where nothing is there.
 [[nodiscard]] const toml::node* find_node(const toml::table& root, std::string_view path);
 
+/// The key, or the innermost table around it that the file has; null where that is the file itself.
+[[nodiscard]] const toml::node* nearest_node(const toml::table& root, std::string_view key);
+
+/// Puts a value at a path below a node, with the tables that are missing on the way; false where there is no way.
+bool put(toml::node& node, std::string_view path, const toml::node& value);
+
 /// A value as the file has it; empty for tables and arrays.
 [[nodiscard]] std::string value_text(const toml::node& node);
 
