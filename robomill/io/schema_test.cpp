@@ -97,6 +97,31 @@ TEST(Schema, WritesWhatItReads) {
   EXPECT_FALSE(fresh.contains("mass_kg"));
 }
 
+struct Holder {
+  std::optional<Kind> kind = {};
+  std::optional<std::array<double, 2>> range_m = {};
+};
+
+TEST(Schema, ReadsWhatMayBeAbsent) {
+  const Schema<Holder> table("holder", "what holds it",
+                             {key("kind", &Holder::kind, kinds, "of its end"),
+                              key("range_mm", &Holder::range_m, "from, to").slider(0.0, 10.0, 0.5)});
+  const auto read_holder = [&](const std::string& text) {
+    TomlFile file(TomlSource("holder.toml", "[holder]\n" + text));
+    Holder out;
+    table.read(file, "holder", out);
+    return out;
+  };
+  EXPECT_FALSE(read_holder("").kind || read_holder("").range_m);
+  EXPECT_EQ(read_holder("kind = \"ball-end\"\n").kind, Kind::ball);
+  EXPECT_EQ(read_holder("range_mm = [1, 2]\n").range_m.value()[1], 2e-3);
+  EXPECT_NE(test::rejection([&] { read_holder("kind = \"ball\"\n"); }).find("must be one of \"flat-end\""),
+            std::string::npos);
+  EXPECT_TRUE(table.write(Holder{})["kind"].is_null());
+  EXPECT_EQ(table.write({.kind = Kind::flat})["kind"], "flat-end");
+  EXPECT_EQ(table.info().keys[1].slider.value().step, 0.5);
+}
+
 TEST(Schema, RejectsByLineKeyValueAndRule) {
   const auto rejected = [](const std::string& from, const std::string& to) {
     std::string text = whole;
