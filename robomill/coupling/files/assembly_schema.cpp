@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
@@ -15,6 +16,15 @@ using io::key;
 using io::of;
 using io::Row;
 using io::Schema;
+
+/// One of the four that robomill joint looks for, which need not keep its rule there: Joint::validate checks it.
+Row<Joint> joint_key(const io::Field<Joint>& field) {
+  Row<Joint> row = key(field.key, field.value, "of the joint");
+  row.read_by([&field](io::TomlFile& file, const std::string& path, Joint& out) {
+    file.number(path, std::string("joint.") + field.member, field.factor, out.*field.value);
+  });
+  return std::string_view(field.key).find("stiffness") != std::string_view::npos ? row.above(0.0) : row.at_least(0.0);
+}
 
 /// A range of [search] of one unknown.
 Row<JointFitOptions> range_key(std::size_t unknown) {
@@ -105,14 +115,7 @@ const Schema<Joint>& joint_options_table() {
   static const Schema<Joint> table(
       "joint", "between tool and holder; without it rigid. robomill joint needs none of its stiffness and damping", [] {
         std::vector<Row<Joint>> rows;
-        for (const io::Field<Joint>& field : joint_fields) {
-          rows.push_back(key(field.key, field.value, "of the joint"));
-          if (rows.size() % 2 == 0) {
-            rows.back().at_least(0.0);
-          } else {
-            rows.back().above(0.0);
-          }
-        }
+        for (const io::Field<Joint>& field : joint_fields) rows.push_back(joint_key(field));
         io::add_rows<Joint>(
             rows,
             {key("cross_stiffness_n_per_rad", &Joint::cross_stiffness_n_per_rad, "force for a rotation"),

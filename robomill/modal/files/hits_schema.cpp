@@ -66,12 +66,13 @@ Row<HitTable> column_key(const char* name, const char* meaning, F code) {
   return declared<HitTable>(name, Holds::text, meaning).or_also(Holds::integer).read_by(code);
 }
 
+/// Whether one file is enough is for whoever opens it.
 void read_file(TomlFile& file, const std::string& path, HitTable& out) {
   if (file.has(path + "[0]")) {
-    throw file.reject(path, "must be one file",
-                      "Force and response in two files are not read yet: write them beside each other in one CSV");
+    file.skip(path);
+  } else {
+    file.path(path, out.file);
   }
-  file.path(path, out.file);
 }
 
 void read_force_direction(TomlFile& file, const std::string& path, HitTable& out) {

@@ -201,6 +201,10 @@ Hit read_hit(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sen
   HitTable given;
   hit_table().read(file, fmt::format("hits[{}]", index), given);
   const HitRow& columns = given.row;
+  if (file.has(row + "file[0]")) {
+    throw file.reject(row + "file", "must be one file",
+                      "Force and response in two files are not read yet: write them beside each other in one CSV");
+  }
   if (io::format_of(given.file) == io::Format::wav && !sensors.has_scale) {
     throw file.reject(row + "file", "is a WAV, and acquisition.scale is missing",
                       "scale says what full scale means: volts where the sensors' mV per unit are given");

@@ -89,7 +89,7 @@ Row<MonitorFile> tachometer_key() {
                             "a column with the pulses of a tachometer or encoder, of either polarity; no vibration");
   row.write = [](const MonitorFile& file, const Row<MonitorFile>&) {
     const int channel = file.options.tachometer_channel;
-    return channel < 0 ? io::absent() : Json(file.columns.channels[static_cast<std::size_t>(channel)]);
+    return channel < 0 ? Json() : Json(file.columns.channels[static_cast<std::size_t>(channel)]);
   };
   return row.or_also(Holds::integer).read_by(read_tachometer);
 }
@@ -202,6 +202,8 @@ const Schema<MonitorOptions>& detector_table() {
            "energy-entropy: the side of the threshold that is chatter"),
        key("false_alarms_per_hour", &MonitorOptions::false_alarms_per_hour,
            "comb-cusum. It sets how long slow growth must last: one hop more for every factor of 37 fewer")
+           .as("false_alarms_per_hour")
+           .in_unit()
            .above(0.0)});
   return table;
 }
