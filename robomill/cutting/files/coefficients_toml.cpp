@@ -229,8 +229,10 @@ CoefficientTable read_unscaled(io::TomlFile& file, const CoefficientKeys& given,
   reject_any(file, {"set", "radial_ratio", "chip_thickness_mm", "rake_deg", helix_key}, "goes with a material");
   CoefficientTable out{.coefficients = given.own};
   if (given.file.empty()) {
-    file.require("coefficients.tangential_n_per_mm2",
-                 "A number, or a polynomial in the axial position angle (rad); or name a file or a material");
+    file.require(
+        "coefficients.tangential_n_per_mm2",
+        "A number (aluminium is near 700), or a polynomial in the axial position angle (rad); or name a file or a "
+        "material");
     return out;
   }
   if (cutting != nullptr || edge != nullptr || given.own.edge_measure != EdgeMeasure::by_kind) {
