@@ -56,8 +56,9 @@ describe('FRF', () => {
     expect(prefersLogFrequency({ ...frf, measured: { ...frf.measured!, frequency_hz: [0, 500, 3500] } })).toBe(false);
   });
   it('shows measured, fitted and coherence, and shades what is not trusted', () => {
-    const modes = [{ mode: 1, mode_of: 'tool', frequency_hz: 10 }, { mode: 2, mode_of: 'tool', frequency_hz: 9000 }, { mode: 1, mode_of: 'workpiece', frequency_hz: 20 }];
-    const figure = frfFigure(frf, modes as Mode[], true, light);
+    const mode = { ...sampleReport().modes!.modes[0]!, limit_share: null };
+    const modes: Mode[] = [{ ...mode, mode: 1, mode_of: 'tool', frequency_hz: 10 }, { ...mode, mode: 2, mode_of: 'tool', frequency_hz: 9000 }, { ...mode, mode: 1, mode_of: 'workpiece', frequency_hz: 20 }];
+    const figure = frfFigure(frf, modes, true, light);
     expect(figure.data).toHaveLength(5);
     const shapes = figure.layout['shapes'] as { type: string; x0: number; x1: number }[];
     expect(shapes.filter((shape) => shape.type === 'rect')).toMatchObject([{ x0: 5, x1: 8 }]);

@@ -1,9 +1,10 @@
 import { describe, expect, it } from 'vitest';
 import { cornerFigure, movesInView, pathFigure, tube } from './corners';
-import type { Corner, JointMotion, Motion, MotionDocument, SmoothDocument, SmoothedBy } from '../documents';
+import type { Corner, JointMotion, Motion, MotionDocument, SmoothDocument, SmoothedBy, SmoothedJoint } from '../documents';
 import { magnitude } from './rows';
 import { jointFigure, speedFigure } from './smooth';
 import { dark, light } from './theme';
+import { sampleReport } from '../report_sample';
 
 const band = (...values: number[]) => ({ low: values, high: values });
 
@@ -29,31 +30,34 @@ const motion = (joints: JointMotion[] = [joint]): Motion => ({
 const moved: MotionDocument = { program: { x_mm: [0, 10], y_mm: [0, 4], z_mm: [0, 2] }, corners: [corner], motions: [motion(), motion()] };
 const alone: MotionDocument = { ...moved, motions: [motion()] };
 
-const limited = (limit_velocity: number | null) => ({ unit: 'rad', limit_velocity, limit_acceleration: 500, limit_jerk: null });
+const sample = sampleReport().smooth!;
+const limited = (limit_velocity: number | null): SmoothedJoint => ({ ...sample.joints[0]!, unit: 'rad', limit_velocity, limit_acceleration: 500, limit_jerk: null });
 
 /** Of a method, or of several: smooth.json. */
-function by(...methods: [string, number][]): SmoothDocument {
-  const each = methods.map(([method, duration_s]) => ({
+function by(...methods: [SmoothedBy['method'], number][]): SmoothDocument {
+  const { document: _, ...rest } = sample;
+  const each = methods.map(([method, duration_s]): SmoothedBy => ({
+    ...rest,
     method,
     duration_s,
-    tip: { limit_error_mm: 0.05, limit_velocity_mm_per_s: 50 },
-    axis: { limit_velocity_deg_per_s: 10 },
+    tip: { ...sample.tip, limit_error_mm: 0.05, limit_velocity_mm_per_s: 50 },
+    axis: { ...sample.axis, limit_velocity_deg_per_s: 10 },
     joints: [limited((10 * Math.PI) / 180)],
-  })) as unknown as SmoothedBy[];
-  return { ...each[0]!, methods: each } as SmoothDocument;
+  }));
+  return { ...sample, ...each[0]!, methods: each };
 }
 
-const smooth = by(['verified', 2], ['<paper>', 2.5]);
+const smooth = by(['verified', 2], ['paper', 2.5]);
 
 const rows = (figure: { layout: Record<string, unknown> }) => Object.keys(figure.layout).filter((key) => key.startsWith('yaxis'));
 
 describe('speeds', () => {
   it('have a line a method, over the longest of them, distinguishable without their colours', () => {
     const { data, layout } = speedFigure(smooth, moved, light);
-    expect(data.map((trace) => trace['name'])).toEqual(['verified', '&lt;paper&gt;', 'verified', '&lt;paper&gt;']);
+    expect(data.map((trace) => trace['name'])).toEqual(['verified', 'paper', 'verified', 'paper']);
     expect(new Set(data.slice(0, 2).map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(2);
     expect(layout['xaxis']).toMatchObject({ range: [0, 2.5], anchor: 'y2' });
-    const slow = speedFigure(by(['a', 2], ['b', 50]), moved, light);
+    const slow = speedFigure(by(['optimal', 2], ['paper', 50]), moved, light);
     expect(slow.layout['xaxis']).toMatchObject({ range: [0, 6] });
     expect(data.map((trace) => trace['showlegend'])).toEqual([true, true, false, false]);
     expect(speedFigure(by(['verified', 2]), alone, light).data[0]).toMatchObject({ showlegend: false });
@@ -78,7 +82,7 @@ describe('a joint', () => {
   });
   it('that stands still has a range', () => {
     const still = motion([{ ...joint, velocity: band(0, 0, 0) }]);
-    const unlimited = { ...smooth, joints: [limited(null)] } as SmoothDocument;
+    const unlimited = { ...smooth, joints: [limited(null)] };
     expect((jointFigure(unlimited, still, 0, light).layout['yaxis'] as { range: number[] }).range).toEqual([-1, 1]);
     expect(magnitude([])).toBe(0);
   });
@@ -124,7 +128,7 @@ describe('corner', () => {
   });
   it('shows the way of each method, escaped', () => {
     const { data, layout } = cornerFigure(smooth, moved, 0, light, 400);
-    expect(data.map((trace) => trace['name'])).toEqual(['program', 'verified', '&lt;paper&gt;']);
+    expect(data.map((trace) => trace['name'])).toEqual(['program', 'verified', 'paper']);
     expect(layout['title']).toMatchObject({ text: 'Line 14: 90°' });
     expect(layout['yaxis']).toMatchObject({ scaleanchor: 'x', range: [-0.25, 0.75] });
     expect(cornerFigure(by(['verified', 2]), alone, 0, light, 400).data[1]).toMatchObject({ showlegend: false });

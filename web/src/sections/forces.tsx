@@ -3,7 +3,7 @@ import { keys } from '#schema/forces';
 import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, WorstBlock } from '../documents';
 import { engagementFigure, forceCurves, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
 import { trackFigure } from '../figures/track';
-import { Bullets, Details, DetailsTable, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
+import { Bullets, DetailsTable, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
 import { isProgram, isRevolution, valueAt } from '../views';
@@ -251,15 +251,17 @@ function Stiffest({ sweep }: { sweep: SpindleRotation }) {
 
 function SweepTable({ sweep }: { sweep: SpindleRotation }) {
   const { rotation_deg: rotation, deflection_um: deflection, condition_number: condition } = sweep;
-  const columns: Column<number>[] = [
-    { heading: 'Rotation γ (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
-    { heading: 'Deflection (µm)', number: true, cell: (i) => (deflection[i] === null ? 'out of reach' : significant(deflection[i]!)) },
-    { heading: 'Condition number', number: true, cell: (i) => significant(condition[i]!) },
-  ];
   return (
-    <Details summary="Deflection over rotation as a table">
-      <Table caption="Deflection over rotation" quiet columns={columns} rows={someOf(rotation.length)} />
-    </Details>
+    <DetailsTable
+      summary="Deflection over rotation as a table"
+      caption="Deflection over rotation"
+      columns={[
+        { heading: 'Rotation γ (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
+        { heading: 'Deflection (µm)', number: true, cell: (i) => (deflection[i] === null ? 'out of reach' : significant(deflection[i]!)) },
+        { heading: 'Condition number', number: true, cell: (i) => significant(condition[i]!) },
+      ]}
+      rows={someOf(rotation.length)}
+    />
   );
 }
 

@@ -167,9 +167,7 @@ export function FeedSection({ plan, searched }: { plan: Plan; searched: Num }) {
         caption="The further out the line, the deeper the cut may be when the feed runs in that direction."
         draw={parts.map((part) => (theme, width) => polarFigure(feed, part, theme, width))}
       />
-      <Details summary="The limit over direction as a table">
-        <Table caption="Limit over feed direction" quiet columns={columns} rows={someOf(direction.length)} />
-      </Details>
+      <DetailsTable summary="The limit over direction as a table" caption="Limit over feed direction" columns={columns} rows={someOf(direction.length)} />
     </Section>
   );
 }

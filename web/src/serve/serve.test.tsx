@@ -2,8 +2,8 @@
 import type { ComponentChildren } from 'preact';
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
-import type { Report } from '../documents';
 import { Page } from '../page';
+import { sampleReport } from '../report_sample';
 import { ApiError, faultOf, openApi } from './api';
 import { Arrivals, FreeNames, receivedText, withArrival } from './files/arrivals';
 import { Bar, follow, saidAfter, Trouble } from './app';
@@ -184,9 +184,8 @@ describe('jobs', () => {
     expect(shown(<JobsView path="7" />)).toContain('There is no job 7');
   });
   it('show their report inside of the page', () => {
-    const report = { title: 'Plan', created: '', lobes: { spindle_speed_rpm: [], axial_depth_mm: [], boundary: [], limit: [] }, assumed: [], warnings: [], notes: [], files: [] };
-    const rest = Object.fromEntries(['plan', 'frf', 'fitted', 'measured', 'assembly', 'modes', 'workpiece_modes', 'forces', 'blocks', 'smooth', 'motion', 'monitor', 'calibration', 'recordings'].map((key) => [key, null]));
-    const page = (within: boolean) => renderToString(<Page report={{ ...rest, ...report } as unknown as Report} within={within} />);
+    const report = { ...sampleReport(), title: 'Plan' };
+    const page = (within: boolean) => renderToString(<Page report={report} within={within} />);
     expect(page(true)).toContain('<section id="lobes"');
     expect(page(true)).not.toMatch(/<main|<h1|class="skip"/);
     expect(page(false)).toMatch(/class="skip".*<h1>Plan<\/h1>.*<main id="main">/);
