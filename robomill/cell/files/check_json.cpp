@@ -348,7 +348,7 @@ const Schema<CellDrawing>& drawing_table() {
   return table;
 }
 
-const Schema<Cell>& robot_table() {
+const Schema<Cell>& checked_robot_table() {
   static const Schema<Cell> table(
       "cell_robot", "the robot of a cell",
       {key(
@@ -368,7 +368,7 @@ const Schema<CellCheck>& check_table() {
       "check", "a robot cell: where its joints put the tool, and whether that comes to the workpiece",
       {key(
            "cell", [](const CellCheck& check) { return check.cell.path.filename().string(); }, "its file"),
-       key("robot", &CellCheck::cell, robot_table(), "of the cell"),
+       key("robot", &CellCheck::cell, checked_robot_table(), "of the cell"),
        key(
            "joints",
            [](const CellCheck& check) {

@@ -16,7 +16,7 @@ using io::Row;
 using io::Schema;
 using io::TomlFile;
 
-constexpr Name<bool> kinds[] = {{"milling", false}, {"drilling", true}};
+constexpr Name<bool> cut_kinds[] = {{"milling", false}, {"drilling", true}};
 constexpr Name<MillingDirection> directions[] = {
     {"up", MillingDirection::up}, {"down", MillingDirection::down}, {"slot", MillingDirection::slot}};
 
@@ -99,7 +99,7 @@ Cut CutTable::milled() const {
 const Schema<CutTable>& cut_table() {
   static const Schema<CutTable> table(
       "cut", "how the cutter goes through the material",
-      {key("kind", &CutTable::drilling, kinds, "of drilling the teeth are the lips"), direction_row(),
+      {key("kind", &CutTable::drilling, cut_kinds, "of drilling the teeth are the lips"), direction_row(),
        key("entry_deg", &CutTable::entry_rad, "angle at which a tooth enters; with exit_deg in place of direction"),
        key("exit_deg", &CutTable::exit_rad, "angle at which it leaves"),
        key(radial_depth_key, &CutTable::radial_depth_m, "step-over, from the neighbouring pass; a slot has none")

@@ -12,10 +12,10 @@ using io::of;
 using io::Row;
 using io::Schema;
 
-constexpr Name<CutterKind> kinds[] = {{"flat-end", CutterKind::flat_end},
-                                      {"ball-end", CutterKind::ball_end},
-                                      {"bull-nose", CutterKind::bull_nose},
-                                      {"general", CutterKind::general}};
+constexpr Name<CutterKind> cutter_kinds[] = {{"flat-end", CutterKind::flat_end},
+                                             {"ball-end", CutterKind::ball_end},
+                                             {"bull-nose", CutterKind::bull_nose},
+                                             {"general", CutterKind::general}};
 
 /// One helix angle, or one a tooth.
 Row<FlatEndMill> helix_row() {
@@ -41,7 +41,7 @@ Row<FlatEndMill> helix_row() {
 const Schema<Cutter>& cutter_table() {
   static const Schema<Cutter> table(
       "tool", "the milling cutter",
-      {key("kind", &Cutter::kind, kinds, "shape of the cutter"),
+      {key("kind", &Cutter::kind, cutter_kinds, "shape of the cutter"),
        of(&Cutter::mill,
           key("teeth", &FlatEndMill::teeth, "cutting edges").at_least(1.0).at_most(100.0).slider(1.0, 20.0, 1.0)),
        of(&Cutter::mill,

@@ -79,7 +79,7 @@ SlotForce read_row(const io::TextTable& table, const io::TextTable::Row& row) {
   return slot;
 }
 
-constexpr std::array<const char*, 3> directions = {"tangential", "radial", "axial"};
+constexpr std::array<const char*, 3> force_directions = {"tangential", "radial", "axial"};
 
 template <class Fit>
 std::array<const CoefficientPair*, 3> pairs_of(const Fit& fit) {
@@ -102,7 +102,7 @@ const Schema<Each>& each_table() {
         std::vector<Row<Each>> rows;
         for (std::size_t i = 0; i < 3; ++i) {
           const auto value = [i](const Each& each) { return each[i]; };
-          rows.push_back(key(directions[i], value, "of the fit in this direction").nullable());
+          rows.push_back(key(force_directions[i], value, "of the fit in this direction").nullable());
         }
         return rows;
       }(),
@@ -123,7 +123,7 @@ const Schema<Values>& values_table() {
         const auto add = [&rows](const char* ending, Each Values::*member, const char* meaning) {
           for (std::size_t i = 0; i < 3; ++i) {
             const auto value = [i, member](const Values& values) { return (values.*member)[i]; };
-            rows.push_back(key(std::string(directions[i]) + ending, value, meaning).nullable());
+            rows.push_back(key(std::string(force_directions[i]) + ending, value, meaning).nullable());
           }
         };
         add("_n_per_mm2", &Values::cutting_n_per_m2, "of cutting");
@@ -236,7 +236,7 @@ const Schema<FitView>& identification_table() {
   return table;
 }
 
-const Schema<FitView>& coefficients_table() {
+const Schema<FitView>& fit_table() {
   static const Schema<FitView> table(
       "coefficients", "cutting force coefficients, from the mean forces of slots",
       {key(
@@ -263,7 +263,7 @@ std::string inline_toml(const io::Json& json) {
 }  // namespace
 
 const io::TableInfo& coefficients_document() {
-  return coefficients_table().info();
+  return fit_table().info();
 }
 
 SlotsFile read_slots(const std::filesystem::path& path) {
@@ -289,14 +289,14 @@ std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file, const std::
 }
 
 std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
-  return io::dump(coefficients_table().write({&fit, &file, &assumed}));
+  return io::dump(fit_table().write({&fit, &file, &assumed}));
 }
 
 std::string slot_fit_csv(const SlotFit& fit) {
   std::string out = "spindle_speed_rpm,coefficient,value,std,r_squared,noise_n\n";
   const auto add = [&out](const std::string& speed, const auto& of) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const char* const name = directions[i];
+      const char* const name = force_directions[i];
       const CoefficientPair* const pair = pairs_of(of)[i];
       const std::string quality = io::csv_number(pair->r_squared) + "," + io::csv_number(pair->noise_n);
       io::add_csv_row(

@@ -65,7 +65,7 @@ const Schema<FrfGrade>& grade_table() {
   return table;
 }
 
-const Schema<HitVerdict>& hit_table() {
+const Schema<HitVerdict>& judged_hit_table() {
   static const Schema<HitVerdict> table(
       "hit", "a hit of the hammer",
       {key("file", &HitVerdict::file, "of its record"), key("accepted", &HitVerdict::accepted, "it counts"),
@@ -78,7 +78,7 @@ const Schema<HitVerdict>& hit_table() {
 }
 
 std::vector<Row<FrfResult>> hits_keys() {
-  return {key("hits", &FrfResult::hits, hit_table(), "each with its verdict"),
+  return {key("hits", &FrfResult::hits, judged_hit_table(), "each with its verdict"),
           key(
               "grades",
               [](const FrfResult& result) {

@@ -28,7 +28,7 @@ const Schema<CalibratedHalf>& half_table() {
   return table;
 }
 
-const Schema<Alarm>& recording_table() {
+const Schema<Alarm>& judged_recording_table() {
   static const Schema<Alarm> table(
       "calibrated_recording", "a recording at the calibrated threshold",
       {key("name", &Alarm::name, "of the recording"),
@@ -69,7 +69,7 @@ const Schema<Calibration>& calibration_table() {
        key("setting", &Calibration::setting, half_table(), "that the threshold was set with"),
        key("verifying", &Calibration::verifying, half_table(), "that it was not set with"),
        key("median_lead_s", &Calibration::median_lead_s, "over the verifying half").nullable(),
-       key("recordings", &Calibration::alarms, recording_table(), "in the order given")},
+       key("recordings", &Calibration::alarms, judged_recording_table(), "in the order given")},
       Use::written, 1);
   return table;
 }
