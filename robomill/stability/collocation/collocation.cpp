@@ -54,9 +54,7 @@ const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const O
   };
   auto& cases = cases_[static_cast<std::size_t>(level % 2)];
   if (lane > 0 && at_[lane - 1] != nullptr && fits(*at_[lane - 1])) return *at_[lane - 1];
-  if (!fits(cases[lane])) {
-    model_.prepare(point, wanted, cases[lane]);
-  }
+  if (!fits(cases[lane])) model_.prepare(point, wanted, cases[lane], lane > 0 ? at_[lane - 1] : nullptr);
   return cases[lane];
 }
 

@@ -9,23 +9,23 @@ namespace {
 
 using Form = MeshTopology::Form;
 
-double& lane_of(Lanes& entry, std::size_t lane) {
-  return entry.v[lane];
+void set(Lanes& entry, LaneRange lanes, double value) {
+  for (std::size_t lane = lanes.first; lane < lanes.end; ++lane) entry.v[lane] = value;
 }
-double& lane_of(double& entry, std::size_t) {
-  return entry;
+void set(double& entry, LaneRange, double value) {
+  entry = value;
 }
 
-/// Row by row into one lane, from entry `from` on.
+/// Row by row, from entry `from` on.
 template <class Entry>
-void put(std::vector<Entry>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
+void put(std::vector<Entry>& to, std::size_t from, LaneRange lanes, const Eigen::MatrixXd& matrix) {
   for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) lane_of(to[from++], lane) = matrix(r, c);
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) set(to[from++], lanes, matrix(r, c));
   }
 }
 
-void put_columns(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
-  for (Eigen::Index i = 0; i < matrix.size(); ++i) to[from++].v[lane] = matrix.data()[i];
+void put_columns(std::vector<Lanes>& to, std::size_t from, LaneRange lanes, const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < matrix.size(); ++i) set(to[from++], lanes, matrix.data()[i]);
 }
 
 }  // namespace
@@ -41,14 +41,14 @@ void CollocationMap::Matrices<Entry>::resize(std::size_t contacts, std::size_t m
 }
 
 template <class Entry>
-void CollocationMap::Matrices<Entry>::set(std::size_t contact, std::size_t lane, std::size_t m,
-                                          const CollocationCase::Piece& piece) {
+void CollocationMap::Matrices<Entry>::fill(std::size_t contact, LaneRange lanes, std::size_t m,
+                                           const CollocationCase::Piece& piece) {
   const std::size_t size = static_cast<std::size_t>(piece.observation.size());
-  put(observation, contact * size, lane, piece.observation);
-  put(influence, contact * size, lane, piece.influence);
+  put(observation, contact * size, lanes, piece.observation);
+  put(influence, contact * size, lanes, piece.influence);
   if (displacement.empty()) return;
-  put(displacement, contact * size, lane, piece.displacement);
-  put(node_response, contact * m * m, lane, piece.node_response);
+  put(displacement, contact * size, lanes, piece.displacement);
+  put(node_response, contact * m * m, lanes, piece.node_response);
 }
 
 template <class Entry>
@@ -127,18 +127,18 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   state_.resize(2 * modal + 2 * m);
 }
 
-void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, std::size_t lane) {
+void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, LaneRange lanes) {
   const std::size_t p = static_cast<std::size_t>(topology_.nodes);
   const CutMesh::Piece& mesh = at.mesh.pieces[e];
   for (std::size_t i = pieces_[e].first_look; i < pieces_[e].last_look; ++i) {
     const std::size_t s = i - pieces_[e].first_look;
     const NodeLook& look = looks_[i];
     if (look.through == NodeLook::Through::block) {
-      put(matrices_, look.matrix, lane, at.pieces[e].delayed[s]);
+      put(matrices_, look.matrix, lanes, at.pieces[e].delayed[s]);
       continue;
     }
-    for (std::size_t l = 0; l < p && !look.exact; ++l) weights_[look.weights + l].v[lane] = mesh.weights[s * p + l];
-    if (look.through == NodeLook::Through::stiffness) put(matrices_, look.matrix, lane, mesh.delayed_stiffness[s]);
+    for (std::size_t l = 0; l < p && !look.exact; ++l) set(weights_[look.weights + l], lanes, mesh.weights[s * p + l]);
+    if (look.through == NodeLook::Through::stiffness) put(matrices_, look.matrix, lanes, mesh.delayed_stiffness[s]);
   }
 }
 
@@ -149,30 +149,30 @@ void CollocationMap::fill(std::span<const Point> points) {
   } else {
     own_.resize(contacts_, layout_.nodes, layout_.modal, remembers_motion());
   }
-  for (std::size_t lane = 0; lane < lane_count; ++lane) {
-    const Point& point = points[std::min(lane, points.size() - 1)];
-    factor_.v[lane] = point.factor;
-    fill(point, lane);
+  for (std::size_t lane = 0; lane < points.size(); ++lane) {
+    const LaneRange lanes = {lane, lane + 1 == points.size() ? lane_count : lane + 1};
+    set(factor_, lanes, points[lane].factor);
+    fill(points[lane], lanes);
   }
 }
 
-void CollocationMap::fill(const Point& point, std::size_t lane) {
+void CollocationMap::fill(const Point& point, LaneRange lanes) {
   const std::size_t m = layout_.nodes;
   for (std::size_t e = 0; e < pieces_.size(); ++e) {
     const CollocationCase::Piece& piece = point.at->pieces[e];
     const PiecePlan& plan = point.at->plans[piece.plan];
     for (std::size_t k = 0; k < layout_.modal / 2; ++k) {
-      factors_[pieces_[e].factor + 2 * k].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).real();
-      factors_[pieces_[e].factor + 2 * k + 1].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).imag();
+      set(factors_[pieces_[e].factor + 2 * k], lanes, plan.factor(static_cast<Eigen::Index>(k)).real());
+      set(factors_[pieces_[e].factor + 2 * k + 1], lanes, plan.factor(static_cast<Eigen::Index>(k)).imag());
     }
     if (pieces_[e].coasts) continue;
     const std::size_t contact = pieces_[e].block;
-    put_columns(coupling_, contact * m * m, lane, piece.coupling);
-    fill_looks(*point.at, e, lane);
+    put_columns(coupling_, contact * m * m, lanes, piece.coupling);
+    fill_looks(*point.at, e, lanes);
     if (!shared_) {
-      own_.set(contact, lane, m, piece);
-    } else if (lane == 0) {
-      common_.set(contact, lane, m, piece);
+      own_.fill(contact, lanes, m, piece);
+    } else if (lanes.first == 0) {
+      common_.fill(contact, lanes, m, piece);
     }
   }
 }

@@ -8,6 +8,11 @@
 
 namespace robomill::stability::detail {
 
+/// Lanes of one point.
+struct LaneRange {
+  std::size_t first = 0, end = 0;
+};
+
 /// Collocation's map over one period for eight points of one topology.
 class CollocationMap final : public PeriodMap {
  public:
@@ -34,7 +39,7 @@ class CollocationMap final : public PeriodMap {
     std::vector<Entry> observation, influence, displacement, node_response;
     std::vector<NodeBlock<Entry>> blocks;
     void resize(std::size_t contacts, std::size_t m, std::size_t modal, bool remembers_motion);
-    void set(std::size_t contact, std::size_t lane, std::size_t m, const CollocationCase::Piece& piece);
+    void fill(std::size_t contact, LaneRange lanes, std::size_t m, const CollocationCase::Piece& piece);
     void set_blocks(const Lanes* factored, std::size_t m, std::size_t modal);
   };
 
@@ -43,8 +48,8 @@ class CollocationMap final : public PeriodMap {
   }
   void lay_out(const MeshTopology& topology);
   void fill(std::span<const Point> points);
-  void fill(const Point& point, std::size_t lane);
-  void fill_looks(const CollocationCase& at, std::size_t piece, std::size_t lane);
+  void fill(const Point& point, LaneRange lanes);
+  void fill_looks(const CollocationCase& at, std::size_t piece, LaneRange lanes);
   void factor();
 
   NodeLayout layout_;

@@ -28,7 +28,11 @@ class CollocationModel {
     static_cast<void>(picture);
   }
   /// By several threads at once.
-  virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
+  /// @param beside  another case of this model, whose plans are taken where pieces are alike
+  void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out,
+               const CollocationCase* beside = nullptr) const {
+    make(point, level, beside, out);
+  }
   /// Where the search for an accuracy starts.
   [[nodiscard]] virtual int first_level(const OperatingPoint& point, double tolerance) const = 0;
   /// In its place where a search looks once more.
@@ -44,6 +48,10 @@ class CollocationModel {
   /// @param vector  eigenvector of the period's map
   [[nodiscard]] virtual Motion motion(const CollocationCase& at, double factor, std::complex<double> multiplier,
                                       const Eigen::VectorXcd& vector) const = 0;
+
+ private:
+  virtual void make(const OperatingPoint& point, const MeshLevel& level, const CollocationCase* beside,
+                    CollocationCase& out) const = 0;
 };
 
 /// Of a problem; in three directions its depth is the axial one.

@@ -112,7 +112,8 @@ int MillingModel::first_level(const OperatingPoint& point, double tolerance) con
   return level_for(stretch, quicker, tolerance);
 }
 
-void MillingModel::prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
+void MillingModel::make(const OperatingPoint& point, const MeshLevel& level, const CollocationCase*,
+                        CollocationCase& out) const {
   constexpr double least_depth_m = 1e-6;  // below it the mesh is that of a thin slice, whose ends do not fall together
   out.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   out.axial_depth_m = point.axial_depth_m;

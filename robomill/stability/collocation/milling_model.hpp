@@ -26,13 +26,16 @@ class MillingModel final : public CollocationModel {
   [[nodiscard]] std::size_t modes() const override { return static_cast<std::size_t>(tip.pole.size()); }
   [[nodiscard]] bool depends_on_depth() const override { return contacts.depends_on_depth(); }
   [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.axial_depth_m * point.gain; }
-  void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
   [[nodiscard]] std::size_t largest_state() const override { return 12000; }
   [[nodiscard]] double reported_rad() const override;
   [[nodiscard]] double whole_rad() const override { return contacts.period_rad() * repeats; }
   [[nodiscard]] Motion motion(const CollocationCase& at, double factor, std::complex<double> multiplier,
                               const Eigen::VectorXcd& vector) const override;
+
+ private:
+  void make(const OperatingPoint& point, const MeshLevel& level, const CollocationCase* beside,
+            CollocationCase& out) const override;
 };
 
 }  // namespace robomill::stability::detail

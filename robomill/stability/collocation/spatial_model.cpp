@@ -169,9 +169,23 @@ void SpatialModel::mesh(const OperatingPoint& point, const MeshLevel& level, Col
   out.pieces = known->pieces;
 }
 
-void SpatialModel::prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
-  const double speed = point.spindle_speed_rad_per_s;
-  out.spindle_speed_rad_per_s = speed;
+/// One more plan of a case, whose speed it has.
+void SpatialModel::plan(double length_rad, int nodes, const CollocationCase* beside, CollocationCase& out) const {
+  const double speed = out.spindle_speed_rad_per_s;
+  if (beside != nullptr && beside->spindle_speed_rad_per_s == speed) {
+    const auto fits = [&](const PiecePlan& plan) { return plan.length_rad == length_rad && plan.nodes() == nodes; };
+    const auto known = std::ranges::find_if(beside->plans, fits);
+    if (known != beside->plans.end()) {
+      out.plans.push_back(*known);
+      return;
+    }
+  }
+  plan_piece(tip_, Rotation(speed, {}), 0.0, length_rad, nodes, false, out.plans.emplace_back());
+}
+
+void SpatialModel::make(const OperatingPoint& point, const MeshLevel& level, const CollocationCase* beside,
+                        CollocationCase& out) const {
+  out.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   out.axial_depth_m = point.axial_depth_m;
   out.level = level;
   mesh(point, level, out);
@@ -188,7 +202,7 @@ void SpatialModel::prepare(const OperatingPoint& point, const MeshLevel& level, 
       out.pieces[e].plan = out.pieces[known].plan;
     } else {
       out.pieces[e].plan = out.plans.size();
-      plan_piece(tip_, Rotation(speed, {}), 0.0, length, records ? level.nodes : 1, false, out.plans.emplace_back());
+      plan(length, records ? level.nodes : 1, beside, out);
     }
     if (records) reduce(out.plans[out.pieces[e].plan], tip_.compliance, out.mesh.topology.form, out.pieces[e]);
   }

@@ -34,7 +34,6 @@ class SpatialModel final : public CollocationModel {
   [[nodiscard]] bool depends_on_depth() const override { return true; }
   [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.gain; }
   void expect(std::span<const double> depths_m, bool picture) override;
-  void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
   [[nodiscard]] int rough_level(int first) const override { return std::max(first - 1, 1); }
   [[nodiscard]] std::size_t at_a_time() const override { return 3; }
@@ -52,6 +51,9 @@ class SpatialModel final : public CollocationModel {
   };
   [[nodiscard]] std::shared_ptr<const Looked> look(double depth, int rings) const;
   void mesh(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const;
+  void make(const OperatingPoint& point, const MeshLevel& level, const CollocationCase* beside,
+            CollocationCase& out) const override;
+  void plan(double length_rad, int nodes, const CollocationCase* beside, CollocationCase& out) const;
 
   Parts parts_;
   std::vector<double> expected_;  ///< depths whose engagements are kept, increasing

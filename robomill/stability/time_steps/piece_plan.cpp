@@ -142,6 +142,7 @@ void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double fr
       weight_s[i][q] = t.quadrature->weight[q] * t.end[i] * length_rad / rotation.speed_rad_per_s(angle);
     }
   }
+  out.length_rad = length_rad;
   out.duration_s = end_s[p];
   out.time_s.assign(end_s.begin(), end_s.begin() + nodes);
   out.weight_s.resize(p);

@@ -12,6 +12,7 @@ namespace robomill::stability::detail {
 /// likewise, in D directions. z in real form is Re z_1, Im z_1, Re z_2, …; every integral of the exponentials is exact
 /// to rounding.
 struct PiecePlan {
+  double length_rad = 0.0;
   double duration_s = 0.0;
   std::vector<double> time_s;    ///< length p: nodes, from the start of the piece
   std::vector<double> weight_s;  ///< length p: of the nodes, for integrals over the piece
@@ -21,6 +22,7 @@ struct PiecePlan {
   Eigen::MatrixXd influence;     ///< W, 2n x Dp [m/N]
   /// Dp x 2n and Dp x Dp, the same for velocities; empty unless asked for. [1/s], [m/(N s)]
   Eigen::MatrixXd velocity_at_nodes, velocity_response;
+  [[nodiscard]] int nodes() const { return static_cast<int>(time_s.size()); }
 };
 
 inline constexpr int most_nodes = 16;
