@@ -14,6 +14,7 @@
 #include "robomill/cutting/files/coefficients_schema.hpp"
 #include "robomill/cutting/files/cut_schema.hpp"
 #include "robomill/cutting/files/cutter_schema.hpp"
+#include "robomill/cutting/files/materials_schema.hpp"
 #include "robomill/cutting/files/slots_schema.hpp"
 #include "robomill/decision/files/limits_schema.hpp"
 #include "robomill/decision/files/tools_files.hpp"
@@ -171,7 +172,13 @@ const std::vector<TableInfo>& toml_documents() {
       toml_document("hits.toml", "the records of a tap test", shared_tables()),
       toml_document("monitor.toml", "a running accelerometer, the cut and the detector", shared_tables()),
       toml_document("assembly.toml", "a tool in a holder", assembly_tables()),
-      toml_document("recordings.toml", "labelled recordings of cuts", recordings_tables())};
+      toml_document("recordings.toml", "labelled recordings of cuts", recordings_tables()),
+      toml_document("materials.toml", "force coefficients of workpiece materials",
+                    {{.name = "materials",
+                      .holds = Holds::table,
+                      .named = true,
+                      .table = &cutting::material_table().info(),
+                      .meaning = "by their names"}})};
   return all;
 }
 
