@@ -11,7 +11,7 @@ using io::key;
 using io::Row;
 using io::Schema;
 
-const Schema<Segment>& written_segment_table() {
+const Schema<Segment>& segment_table() {
   const auto fluted = [](const Segment& segment) { return segment.flutes > 0; };
   static const Schema<Segment> table(
       "segment", "a segment of tool or holder",
@@ -42,7 +42,7 @@ const Schema<Joint>& assembly_joint_table() {
         add_rows(rows, {key("cross_stiffness_n_per_rad", &Joint::cross_stiffness_n_per_rad, "in SI"),
                         key("points", &Joint::points, "along the shank"),
                         where(distributed, key("insertion_length_mm", &Joint::insertion_length_m, "of the shank")),
-                        where(distributed, key("shank", &Joint::shank, written_segment_table(), "in the holder"))});
+                        where(distributed, key("shank", &Joint::shank, segment_table(), "in the holder"))});
         return rows;
       }(),
       io::Use::written);

@@ -87,7 +87,7 @@ const std::vector<SegmentNumber>& segment_numbers() {
   return numbers;
 }
 
-const Schema<Segment>& segment_table() {
+const Schema<Segment>& segment_options_table() {
   static const Schema<Segment> table("segment", "a round part, with or without a bore", [] {
     std::vector<Row<Segment>> rows;
     for (const SegmentNumber& number : segment_numbers()) rows.push_back(number.row);
@@ -125,7 +125,7 @@ const Schema<Joint>& joint_options_table() {
                  .at_least(1.0)
                  .at_most(100.0),
              key("insertion_length_mm", &Joint::insertion_length_m, "over which several points are").at_least(0.0),
-             key("shank", &Joint::shank, segment_table(),
+             key("shank", &Joint::shank, segment_options_table(),
                  "the shank in the holder. With more than one point the holder's segments over the insertion need "
                  "its bore (inner_diameter_mm)")
                  .as("shank")});
@@ -137,7 +137,7 @@ const Schema<Joint>& joint_options_table() {
 const Schema<HolderTable>& holder_table() {
   static const Schema<HolderTable> table(
       "holder", "what holds the tool; without it a rigid wall",
-      {key("segments", &HolderTable::segments, segment_table(), "from the joint to the wall; []: a rigid wall")
+      {key("segments", &HolderTable::segments, segment_options_table(), "from the joint to the wall; []: a rigid wall")
            .as("holder.segments"),
        key("receptances", &HolderTable::receptances, "a measured holder, any FRF file; in place of segments"),
        key("points_mm", &HolderTable::position_m,
@@ -145,7 +145,7 @@ const Schema<HolderTable>& holder_table() {
            "rotations are completed by finite differences")
            .as("position_m")
            .or_one(),
-       key("artefact", &HolderTable::artefact, segment_table(),
+       key("artefact", &HolderTable::artefact, segment_options_table(),
            "a known rod was in the holder when it was measured: its effect is removed. points_mm count from its free "
            "end. "
            "One point is enough where its rotations were measured too (1x:1x, 1ry:1x, 1ry:1my)")

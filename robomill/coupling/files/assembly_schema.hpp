@@ -18,7 +18,7 @@ struct SegmentNumber {
 };
 [[nodiscard]] const std::vector<SegmentNumber>& segment_numbers();
 /// [[tool]], [[joint.shank]], holder.segments and [[holder.artefact]].
-[[nodiscard]] const io::Schema<Segment>& segment_table();
+[[nodiscard]] const io::Schema<Segment>& segment_options_table();
 
 /// [frequency]
 struct FrequencyTable {

@@ -34,7 +34,7 @@ void check_segments(const io::TomlFile& file, const char* member, const std::vec
 std::vector<Segment> read_tool(io::TomlFile& file) {
   std::vector<Segment> out(file.tables("tool"));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    segment_table().read(file, fmt::format("tool[{}]", i), out[i], fmt::format("tool[{}].", i + 1));
+    segment_options_table().read(file, fmt::format("tool[{}]", i), out[i], fmt::format("tool[{}].", i + 1));
   }
   check_segments(file, "tool", out);
   return out;
