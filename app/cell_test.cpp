@@ -44,7 +44,8 @@ TEST_F(CellVerb, APlacementThatFailsExitsWithThreeAndProposesOthers) {
   EXPECT_NE(run.out.find("the workpiece's origin: "), std::string::npos) << run.out;
   const std::size_t at = run.out.find("  origin_mm = ");
   ASSERT_NE(at, std::string::npos) << run.out;
-  EXPECT_NE(slurp(folder_.at("cell.html")).find("\"cell\":{\"cell\":\"cell.toml\""), std::string::npos);
+  EXPECT_NE(slurp(folder_.at("cell.html")).find("\"cell\":{\"document\":\"check/1\",\"cell\":\"cell.toml\""),
+            std::string::npos);
   // As it is printed it goes into the cell.
   const std::string line = run.out.substr(at + 14, run.out.find('\n', at) - at - 14);
   write_cell(line);

@@ -70,7 +70,7 @@ ROBOMILL_API void write_init(const InitFiles& files);
 
 /// Questions in shop terms whose answers are put into the documents that robomill init is to write: a value each in its
 /// place, comments as they were. Answers have units or none: "0.25 in", "100 mV/g", "12 Nm", "7.5 kW".
-class Interview {
+class ROBOMILL_API Interview {
  public:
   /// @param files  outlives the interview; a question whose keys none of its documents has is not asked
   Interview(Template kind, InitFiles& files);

@@ -104,7 +104,6 @@ void read_postures(io::TomlFile& file, Cell& out) {
 
 /// @return the spindle frame in the flange frame
 Eigen::Isometry3d read_tool(io::TomlFile& file, Cell& out) {
-  if (file.has("tool") && !file.has("tool.teeth")) file.require("tool.length_mm");  // else [tool] may be the cutter's
   MountedTool tool;
   mounted_tool_table().read(file, "tool", tool);
   if (tool.end.center_m && !tool.end.mass_kg) throw file.reject("tool.center_mm", "goes with tool.mass_kg");
@@ -137,6 +136,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   if (serial) link_frames = take_serial(file, given, mount, out);
   take_origin(given, out);
   if (file.has("workpiece")) file.require("workpiece.origin_mm");
+  if (file.has("tool") && !file.has("tool.teeth")) file.require("tool.length_mm");  // else [tool] may be the cutter's
   out.origin_given = file.has("workpiece.origin_mm");
   robot::Placement workpiece;
   workpiece_table().read(file, "workpiece", workpiece);

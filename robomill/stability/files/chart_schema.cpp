@@ -34,10 +34,7 @@ const Schema<ChartTable>& chart_options_table() {
   };
   static const Schema<ChartTable> table(
       "lobes", "the stability chart",
-      {option(key("spindle_speed_rpm", &LobesOptions::spindle_speed_rad_per_s, "from, to")
-                  .above(0.0)
-                  .entries(2)
-                  .required("[from, to]")),
+      {option(key("spindle_speed_rpm", &LobesOptions::spindle_speed_rad_per_s, "from, to").above(0.0).entries(2)),
        option(key(swept_key(SweptParameter::axial_depth), &LobesOptions::axial_depth_m, "from, to")
                   .at_least(0.0)
                   .entries(2)
