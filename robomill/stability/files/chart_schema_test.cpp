@@ -46,7 +46,7 @@ TEST(ChartSchema, RejectsARangeOfTheWrongLength) {
   io::TomlFile file(io::TomlSource("lobes.toml", "[lobes]\nspindle_speed_rpm = 4000\naxial_depth_mm = [0, 6]\n"));
   ChartTable chart;
   EXPECT_EQ(test::rejection([&] { chart_options_table().read(file, "lobes", chart); }),
-            "lobes.toml:2: lobes.spindle_speed_rpm = 4000 rpm; must hold 2 numbers");
+            "lobes.toml:2: lobes.spindle_speed_rpm = 4000 rpm; must hold 2 entries; it holds 1");
 }
 
 }  // namespace chart_schema_test
