@@ -64,10 +64,10 @@ class Columns {
 /// A key that holds a table by its columns.
 /// @param lines  (const T&) -> std::vector<U>
 template <class F, class U>
-[[nodiscard]] auto columns_key(std::string name, F lines, const Columns<U>& columns, std::string meaning) {
+[[nodiscard]] auto columns_key(const std::string& name, F lines, const Columns<U>& columns,
+                               const std::string& meaning) {
   using T = typename detail::Getter<F>::Object;
-  Row<T> row{
-      .key = {.name = std::move(name), .holds = Holds::table, .table = &columns.info(), .meaning = std::move(meaning)}};
+  Row<T> row{.key = {.name = name, .holds = Holds::table, .table = &columns.info(), .meaning = meaning}};
   row.write = [lines, &columns](const T& object, const Row<T>&) { return columns.write(lines(object)); };
   return row;
 }

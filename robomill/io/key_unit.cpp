@@ -117,7 +117,7 @@ std::string unit_of_key(std::string_view key) {
 
 KeyUnit key_unit(std::string_view key) {
   const Suffix suffix = suffix_of(key);
-  KeyUnit out{.text = text_of(suffix), .member = std::string(suffix.name)};
+  KeyUnit out{.name = std::string(suffix.name), .text = text_of(suffix), .member = std::string(suffix.name)};
   bool divided = false;
   for (const UnitWord* const word : suffix.words) {
     if (word == nullptr) {

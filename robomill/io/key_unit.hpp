@@ -9,6 +9,7 @@ namespace robomill::io {
 
 /// What the end of a key says of its number: "feed_mm_per_min" is in mm/min, and fills feed_m_per_s.
 struct KeyUnit {
+  std::string name = {};    ///< of the key without its unit: "feed"
   std::string text = {};    ///< "mm/min"; empty: none
   double factor = 1.0;      ///< SI value = factor * value
   std::string member = {};  ///< the key's name in SI: "feed_m_per_s"

@@ -14,13 +14,17 @@ bool Rule::keeps(double value) const {
   return (above ? value > lowest : value >= lowest) && (below ? value < highest : value <= highest);
 }
 
-std::string Rule::text() const {
+std::string Rule::range() const {
   const bool low = std::isfinite(lowest), high = std::isfinite(highest);
-  if (low && high && above && below) return fmt::format("must lie between {:.6g} and {:.6g}", lowest, highest);
-  std::string out = "must be";
-  if (low) out += fmt::format(" {} {:.6g}", above ? ">" : ">=", lowest);
-  if (high) out += fmt::format("{} {} {:.6g}", low ? " and" : "", below ? "<" : "<=", highest);
-  return out;
+  if (low && high && above && below) return fmt::format("between {:.6g} and {:.6g}", lowest, highest);
+  const std::string from = low ? fmt::format("{} {:.6g}", above ? ">" : ">=", lowest) : "";
+  const std::string to = high ? fmt::format("{} {:.6g}", below ? "<" : "<=", highest) : "";
+  return from + (low && high ? " and " : "") + to;
+}
+
+std::string Rule::text() const {
+  const std::string kept = range();
+  return (kept.starts_with("between") ? "must lie " : "must be ") + kept;
 }
 
 namespace detail {
@@ -250,6 +254,23 @@ std::string in_cell(std::string text) {
   return text;
 }
 
+/// "mm, > 0, list".
+std::string values_of(const Key& key) {
+  std::string out = key.holds == Holds::boolean ? "" : key.unit();
+  const auto add = [&out](std::string_view more, std::string_view between = ", ") {
+    if (!out.empty() && !more.empty()) out += between;
+    out += more;
+  };
+  for (const std::string& word : key.words) add(fmt::format("`{}`", word), " ");
+  if (key.holds == Holds::path) add("path");
+  if (key.holds == Holds::boolean) add("true, false");
+  add(key.rule.range());
+  if (key.lists > 0 && key.holds != Holds::table) {
+    add(key.rule.entries > 0 ? fmt::format("list of {}", key.rule.entries) : key.lists > 1 ? "list of lists" : "list");
+  }
+  return out;
+}
+
 /// What is said of a key beside its unit: of a document that people write its default, of another whether it is there.
 std::string presence(const Key& key, Use use) {
   if (use == Use::written) return key.required ? key.nullable || key.null_list ? "null: none" : "" : "on occasion";
@@ -265,13 +286,11 @@ void add_markdown(const TableInfo& table, const std::string& before, std::map<co
                              (key.named                                    ? ".*"
                               : key.lists > 0 && key.holds == Holds::table ? "[]"
                                                                            : "");
-    std::string values = key.unit();
-    for (const std::string& word : key.words) values += fmt::format("{}`{}`", values.empty() ? "" : " ", word);
     std::string meaning = key.meaning;
     const bool first = key.holds == Holds::table && seen.emplace(key.table, name).second;
     if (key.holds == Holds::table && !first) meaning += fmt::format("; keys as of `{}`", seen.at(key.table));
-    out +=
-        fmt::format("| `{}` | {} | {} | {} |\n", name, values, presence(key, table.use), in_cell(std::move(meaning)));
+    out += fmt::format("| `{}` | {} | {} | {} |\n", name, values_of(key), presence(key, table.use),
+                       in_cell(std::move(meaning)));
     if (first) add_markdown(*key.table, name + ".", seen, out);
   }
 }

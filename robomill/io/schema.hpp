@@ -139,14 +139,12 @@ struct Row {
 /// A key that a member holds. Its unit is that of the key's name (key_unit), which gives the factor and the member's
 /// name in errors; it is readable where the member's type is one that TOML has.
 template <class T, class M>
-[[nodiscard]] Row<T> key(std::string name, M T::*member, std::string meaning) {
+[[nodiscard]] Row<T> key(const std::string& name, M T::*member, const std::string& meaning) {
   const KeyUnit unit = key_unit(name);
-  Row<T> row{.key = {.name = std::move(name),
-                     .holds = detail::Holding<M>::holds,
-                     .lists = detail::Holding<M>::lists,
-                     .meaning = std::move(meaning)},
-             .member = unit.member,
-             .factor = unit.factor};
+  Row<T> row{
+      .key = {.name = name, .holds = detail::Holding<M>::holds, .lists = detail::Holding<M>::lists, .meaning = meaning},
+      .member = unit.member,
+      .factor = unit.factor};
   if constexpr (requires(TomlFile & file, M & out) {
                   detail::read_value(file, std::string(), std::string(), 1.0, Key(), out);
                 }) {
@@ -162,8 +160,8 @@ template <class T, class M>
 
 /// A key that holds one word of a list.
 template <class T, class E, std::size_t n>
-[[nodiscard]] Row<T> key(std::string name, E T::*member, const Name<E> (&names)[n], std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .meaning = std::move(meaning)}};
+[[nodiscard]] Row<T> key(const std::string& name, E T::*member, const Name<E> (&names)[n], const std::string& meaning) {
+  Row<T> row{.key = {.name = name, .meaning = meaning}};
   row.words(names);
   row.read = [member, &names](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     file.choice(path, names, out.*member);
@@ -174,9 +172,9 @@ template <class T, class E, std::size_t n>
 
 /// The same; none where the key is absent.
 template <class T, class E, std::size_t n>
-[[nodiscard]] Row<T> key(std::string name, std::optional<E> T::*member, const Name<E> (&names)[n],
-                         std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name), .holds = Holds::word, .meaning = std::move(meaning)}};
+[[nodiscard]] Row<T> key(const std::string& name, std::optional<E> T::*member, const Name<E> (&names)[n],
+                         const std::string& meaning) {
+  Row<T> row{.key = {.name = name, .holds = Holds::word, .meaning = meaning}};
   for (const auto& [word, value] : names) row.key.words.emplace_back(word);
   row.read = [member, &names](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     E value{};
@@ -194,15 +192,15 @@ template <class F>
 requires requires {
   &F::operator();
 }
-[[nodiscard]] auto key(std::string name, F value, std::string meaning) {
+[[nodiscard]] auto key(const std::string& name, F value, const std::string& meaning) {
   using T = typename detail::Getter<F>::Object;
   using M = typename detail::Getter<F>::Value;
   const double factor = key_unit(name).factor;
-  Row<T> row{.key = {.name = std::move(name),
+  Row<T> row{.key = {.name = name,
                      .holds = detail::Holding<M>::holds,
                      .lists = detail::Holding<M>::lists,
                      .named = detail::is_named<M>,
-                     .meaning = std::move(meaning)},
+                     .meaning = meaning},
              .factor = factor};
   row.write = [value](const T& object, const Row<T>& self) {
     return detail::write_value(value(object), {self.factor, self.every_digit});
@@ -216,9 +214,9 @@ template <class F, class E, std::size_t n>
 requires requires {
   &F::operator();
 }
-[[nodiscard]] auto key(std::string name, F value, const Name<E> (&names)[n], std::string meaning) {
+[[nodiscard]] auto key(const std::string& name, F value, const Name<E> (&names)[n], const std::string& meaning) {
   using T = typename detail::Getter<F>::Object;
-  Row<T> row{.key = {.name = std::move(name), .meaning = std::move(meaning)}};
+  Row<T> row{.key = {.name = name, .meaning = meaning}};
   row.words(names);
   row.write = [value, &names](const T& object, const Row<T>&) { return text_or_null(name_in(names, value(object))); };
   return row;
@@ -248,10 +246,9 @@ template <class T, class U>
 /// A key that code reads, and no member's row: its value depends on other keys.
 /// @param lists  1: a list of them
 template <class T>
-[[nodiscard]] Row<T> declared(std::string name, Holds holds, std::string meaning, int lists = 0) {
+[[nodiscard]] Row<T> declared(const std::string& name, Holds holds, const std::string& meaning, int lists = 0) {
   const double factor = key_unit(name).factor;
-  Row<T> row{.key = {.name = std::move(name), .holds = holds, .lists = lists, .meaning = std::move(meaning)},
-             .factor = factor};
+  Row<T> row{.key = {.name = name, .holds = holds, .lists = lists, .meaning = meaning}, .factor = factor};
   row.write = [](const T&, const Row<T>&) { return Json(Json::value_t::discarded); };
   row.always = false;
   return row;
@@ -286,8 +283,8 @@ class Schema {
   /// @param version  of a document
   Schema(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read, int version = 0)
       : rows_(std::move(rows)) {
-    info_.name = std::move(name);
-    info_.meaning = std::move(meaning);
+    info_.name = name;
+    info_.meaning = meaning;
     info_.use = use;
     info_.version = version;
     info_.keys.reserve(rows_.size());
@@ -342,8 +339,9 @@ class Schema {
  private:
   /// None where it is not known. A number that the rule rejects stands for none too, as does an empty text or list.
   [[nodiscard]] static Json default_of(Json value, const Rule& rule) {
+    const bool blank = value.is_string() && value.template get_ref<const std::string&>().empty();
     const auto rejected = [&](const Json& one) { return one.is_number() && !rule.keeps(one.template get<double>()); };
-    if (value.is_discarded() || value.empty() || value == "" || rejected(value)) return nullptr;
+    if (value.is_discarded() || value.empty() || blank || rejected(value)) return nullptr;
     return value.is_array() && std::ranges::any_of(value, rejected) ? Json() : value;
   }
 
@@ -353,9 +351,8 @@ class Schema {
 
 /// A key that holds another table.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, U T::*member, const Schema<U>& table, std::string meaning) {
-  Row<T> row{
-      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
+[[nodiscard]] Row<T> key(const std::string& name, U T::*member, const Schema<U>& table, const std::string& meaning) {
+  Row<T> row{.key = {.name = name, .holds = Holds::table, .table = &table.info(), .meaning = meaning}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     table.read(file, path, out.*member);
   };
@@ -365,12 +362,9 @@ template <class T, class U>
 
 /// A key that holds a list of tables.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, std::vector<U> T::*member, const Schema<U>& table, std::string meaning) {
-  Row<T> row{.key = {.name = std::move(name),
-                     .holds = Holds::table,
-                     .lists = 1,
-                     .table = &table.info(),
-                     .meaning = std::move(meaning)}};
+[[nodiscard]] Row<T> key(const std::string& name, std::vector<U> T::*member, const Schema<U>& table,
+                         const std::string& meaning) {
+  Row<T> row{.key = {.name = name, .holds = Holds::table, .lists = 1, .table = &table.info(), .meaning = meaning}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>& self, T& out) {
     for (std::size_t i = 0; i < file.tables(path); ++i) {
       table.read(file, path + "[" + std::to_string(i) + "]", (out.*member).emplace_back(),
@@ -387,9 +381,9 @@ template <class T, class U>
 
 /// A table that may be absent.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, std::optional<U> T::*member, const Schema<U>& table, std::string meaning) {
-  Row<T> row{
-      .key = {.name = std::move(name), .holds = Holds::table, .table = &table.info(), .meaning = std::move(meaning)}};
+[[nodiscard]] Row<T> key(const std::string& name, std::optional<U> T::*member, const Schema<U>& table,
+                         const std::string& meaning) {
+  Row<T> row{.key = {.name = name, .holds = Holds::table, .table = &table.info(), .meaning = meaning}};
   row.read = [member, &table](TomlFile& file, const std::string& path, const Row<T>&, T& out) {
     if (file.has(path)) table.read(file, path, (out.*member).emplace());
   };
@@ -441,23 +435,24 @@ template <class F, class U>
 requires requires {
   &F::operator();
 }
-[[nodiscard]] auto key(std::string name, F value, const Schema<U>& table, std::string meaning) {
+[[nodiscard]] auto key(const std::string& name, F value, const Schema<U>& table, const std::string& meaning) {
   using T = typename detail::Getter<F>::Object;
-  Row<T> row{.key = {.name = std::move(name),
+  Row<T> row{.key = {.name = name,
                      .holds = Holds::table,
                      .lists = detail::table_lists<typename detail::Getter<F>::Value>,
                      .named = detail::is_named<typename detail::Getter<F>::Value>,
                      .table = &table.info(),
-                     .meaning = std::move(meaning)}};
+                     .meaning = meaning}};
   row.write = [value, &table](const T& object, const Row<T>&) { return detail::write_table(table, value(object)); };
   return row;
 }
 
 /// A table that a pointer of the object leads to; null where there is none. Written only.
 template <class T, class U>
-[[nodiscard]] Row<T> key(std::string name, const U* T::*member, const Schema<U>& table, std::string meaning) {
+[[nodiscard]] Row<T> key(const std::string& name, const U* T::*member, const Schema<U>& table,
+                         const std::string& meaning) {
   return key(
-      std::move(name), [member](const T& object) { return object.*member; }, table, std::move(meaning));
+      name, [member](const T& object) { return object.*member; }, table, meaning);
 }
 
 /// Rows after others.

@@ -116,7 +116,7 @@ bool read_value(TomlFile& file, const std::string& path, const std::string& memb
 template <int n>
 requires(n > 0) bool read_value(TomlFile& file, const std::string& path, const std::string& member, double factor,
                                 const Key& key, Eigen::Matrix<double, n, 1>& out) {
-  std::array<double, n> values;
+  std::array<double, n> values = {};
   if (!read_value(file, path, member, factor, key, values)) return false;
   out = Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.data());
   return true;

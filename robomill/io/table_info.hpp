@@ -27,6 +27,8 @@ struct Rule {
   std::size_t entries = 0;            ///< of a list; 0: any number
   std::string hint = {};              ///< the likely cause of a value that does not
   [[nodiscard]] bool keeps(double value) const;
+  /// "> 0", "between 0 and 1"; empty: any number.
+  [[nodiscard]] std::string range() const;
   /// "must be > 0", "must lie between 0 and 1".
   [[nodiscard]] std::string text() const;
 };

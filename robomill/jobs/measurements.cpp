@@ -128,7 +128,8 @@ CoefficientsResult run_coefficients(const CoefficientsJob& job) {
 StiffnessResult run_stiffness(const StiffnessJob& job) {
   StiffnessResult out;
   out.output = job.output;
-  out.cell = cell::read_cell(job.cell);
+  cell::CellFile file = cell::read_cell(job.cell);
+  out.cell = std::move(static_cast<cell::Cell&>(file));
   const robot::Cell& cell = out.cell.robot;
   out.loads = robot::read_loads(job.loads, cell.arm);
   out.cell.notes.insert(out.cell.notes.end(), out.loads.notes.begin(), out.loads.notes.end());

@@ -84,12 +84,7 @@ void write_document(const std::filesystem::path& path, const CalibrateResult& re
 /// measured holder
 void require_holder(const TipPrediction& result, const std::string& option);
 
-/// Why a result is not the answer that its verb is for (exit 3): "the fit did not converge". Empty: it is, as of every
-/// result that is not listed.
-template <class Result>
-[[nodiscard]] std::string shortfall(const Result& /*result*/) {
-  return {};
-}
+/// Why a result is not the answer that its verb is for (exit 3): "the fit did not converge". Empty: it is.
 [[nodiscard]] std::string shortfall(const ModesResult& result);
 [[nodiscard]] std::string shortfall(const ToolsResult& result);
 [[nodiscard]] std::string shortfall(const JointResult& result);
@@ -97,6 +92,22 @@ template <class Result>
 [[nodiscard]] std::string shortfall(const CoefficientsResult& result);
 [[nodiscard]] std::string shortfall(const StiffnessResult& result);
 [[nodiscard]] std::string shortfall(const cell::CellCheck& result);
+// Whatever they find is an answer.
+[[nodiscard]] inline std::string shortfall(const FrfJobResult& /*result*/) {
+  return {};
+}
+[[nodiscard]] inline std::string shortfall(const cell::ModesOfPosture& /*result*/) {
+  return {};
+}
+[[nodiscard]] inline std::string shortfall(const TipPrediction& /*result*/) {
+  return {};
+}
+[[nodiscard]] inline std::string shortfall(const LobesJobResult& /*result*/) {
+  return {};
+}
+[[nodiscard]] inline std::string shortfall(const ExplainResult& /*result*/) {
+  return {};
+}
 
 /// A result in the lines that the command line prints, and that a report shows where no script runs. Texts out of files
 /// are printable.

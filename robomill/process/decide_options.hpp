@@ -5,6 +5,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
+#include "robomill/base/units.hpp"
 
 // Method: robomill/process/README.md, "The decision (`decide.hpp`)"
 
@@ -46,7 +47,7 @@ struct ROBOMILL_API DecideOptions {
   SpeedChanges speed_changes = SpeedChanges::air;
   bool speed_changes_given = false;  ///< that is asked for; else the output may allow one speed alone
   /// > 0; of the spindle. The default is an assumption: 3,000 rpm a second.
-  double spindle_ramp_rad_per_s2 = 314.159265358979;
+  double spindle_ramp_rad_per_s2 = 3000.0 * units::rpm;
   double max_force_n = 0.0;                         ///< >= 0; peak on the tool; 0: no limit
   double max_deflection_m = 0.0;                    ///< >= 0; of the tip under a revolution's mean force; 0: no limit
   bool avoid_reversals = false;                     ///< no joint's load may turn round while it cuts
@@ -54,10 +55,10 @@ struct ROBOMILL_API DecideOptions {
   std::array<double, 2> chip_thickness_m = {0, 0};  ///< greatest in the cut: least and most; 0: as the program has it
   std::array<double, 2> cutting_speed_m_per_s = {0, 0};  ///< of the outermost point that cuts; 0: no limit
   /// Turns of the flange about the tool's axis, from where the program has it.
-  std::array<double, 2> gamma_range_rad = {-1.5707963267949, 1.5707963267949};
-  double gamma_step_rad = 0.261799387799149;  ///< >= 1°
+  std::array<double, 2> gamma_range_rad = {-90.0 * units::deg, 90.0 * units::deg};
+  double gamma_step_rad = 15.0 * units::deg;  ///< >= 1°
   /// Leans of the tool from where the program has it, where lead or tilt are free: in (0, 45°], and its steps, >= 1°.
-  double cone_rad = 0.261799387799149, cone_step_rad = 0.130899693899575;
+  double cone_rad = 15.0 * units::deg, cone_step_rad = 7.5 * units::deg;
   bool compensate = false;  ///< finishing passes are moved
   PathOffsets offsets = {};
   [[nodiscard]] bool is_free(Free what) const;

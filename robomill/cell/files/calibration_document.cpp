@@ -19,9 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 using modal::PostureCalibration;
 
-constexpr std::string_view document_kind = "calibration/1";
+constexpr std::string_view document_kind = "posture-calibration/1";
 /// How each of these documents begins, whatever its version.
-constexpr std::string_view beginning = "{\n  \"document\": \"calibration/";
+constexpr std::string_view beginning = "{\n  \"document\": \"posture-calibration/";
 constexpr std::uintmax_t most_bytes = 1 << 20;
 constexpr std::size_t most_tools = 2;
 

@@ -168,7 +168,7 @@ TEST(CalibrationDocument, IsIgnoredAndReplacedWhereItIsBroken) {
     EXPECT_EQ(posture_modes_json(place.modes()), made);
   };
   rejects(whole.substr(0, whole.size() / 2));
-  rejects(replaced(whole, "calibration/1", "calibration/2"));
+  rejects(replaced(whole, "posture-calibration/1", "posture-calibration/2"));
   rejects(replaced(whole, "\"noise\": ", "\"noise\": 1"));
   rejects(replaced(whole, "\"noise\": ", "\"noise\": 1e999, \"n\": "));
   // With a digest that fits.

@@ -85,7 +85,8 @@ std::vector<Row<RobotTable>> robot_rows() {
           "name of an arm that the program contains: kinematics, limits, stiffness and masses. Keys given beside it "
           "take "
           "precedence; dh and urdf cannot be combined with it"),
-      key("dh", &RobotTable::dh, dh_table(), "one row for each joint").as("dh"),
+      key("dh", &RobotTable::dh, dh_table(), "one row for each joint: standard DH, Rz(θ + offset) Tz(d) Tx(a) Rx(α)")
+          .as("dh"),
       key("urdf", &RobotTable::urdf,
           "in place of dh: limits, velocity, damping and masses come from it; fixed joints are folded in. Rejected: "
           "mimic, floating and planar joints, links that are no tree, more than 2,000 joints"),
@@ -99,7 +100,9 @@ std::vector<Row<RobotTable>> robot_rows() {
   }
   io::add_rows<RobotTable>(
       rows,
-      {key("links", &RobotTable::links, link_table(), "one table a joint").as("joints"),
+      {key("links", &RobotTable::links, link_table(),
+           "one table a joint, in the frame at the end of its DH row, or of its URDF link")
+           .as("joints"),
        key("gamma_deg", &RobotTable::gamma_rad,
            "rotation of the flange about the tool's axis, without it 0; smooth chooses it where it is not given")
            .as("redundant_gamma_rad"),

@@ -49,10 +49,10 @@ struct RobotTable {
 
 /// A list of [robot] with one number a joint.
 struct JointList {
-  const char *key, *member;
-  std::vector<double> RobotTable::*values;
-  double robot::Joint::*of_joint;
-  const char* meaning;
+  const char *key = nullptr, *member = nullptr;
+  std::vector<double> RobotTable::*values = nullptr;
+  double robot::Joint::*of_joint = nullptr;
+  const char* meaning = nullptr;
 };
 inline constexpr JointList joint_lists[] = {
     {"joint_stiffness_n_m_per_rad", "stiffness", &RobotTable::stiffness, &robot::Joint::stiffness,

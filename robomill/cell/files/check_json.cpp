@@ -69,12 +69,12 @@ std::vector<std::string> assumed_keys(const JointAt& at) {
 }
 
 /// A limit of a joint, in its unit. @param rate  which is > 0
-Row<JointAt> limit_key(std::string name, robot::Position6 robot::JointLimits::*member, bool rate) {
+Row<JointAt> limit_key(const std::string& name, robot::Position6 robot::JointLimits::*member, bool rate) {
   const auto value = [member, rate](const JointAt& at) {
     const double in_si = (at.check->limits.*member)(at.joint);
     return rate ? if_positive(in_si / at.unit()) : limit(in_si, at.unit());
   };
-  return key(std::move(name), value, "none: no limit").in_unit().nullable();
+  return key(name, value, "none: no limit").in_unit().nullable();
 }
 
 const Schema<JointAt>& joint_table() {
@@ -198,11 +198,11 @@ const Schema<Of<BeyondLimit>>& beyond_table() {
 const Schema<Of<Miss>>& miss_table() {
   using At = Of<Miss>;
   /// None where it is 0.
-  const auto known = [](std::string name, auto Miss::*member, std::string meaning) {
+  const auto known = [](const std::string& name, auto Miss::*member, const std::string& meaning) {
     const auto value = [member](const At& at) {
       return at.part->*member > 0 ? std::optional(at.part->*member) : std::nullopt;
     };
-    return key(std::move(name), value, std::move(meaning)).nullable();
+    return key(name, value, meaning).nullable();
   };
   static const Schema<At> table(
       "cell_miss", "a pose that the tool cannot take",

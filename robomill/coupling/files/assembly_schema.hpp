@@ -13,8 +13,8 @@ namespace robomill::coupling {
 
 /// A number of a segment, as a key of a document and as a column of tools.csv.
 struct SegmentNumber {
-  io::Row<Segment> row;
-  double Segment::*value;
+  io::Row<Segment> row = {};
+  double Segment::*value = nullptr;
 };
 [[nodiscard]] const std::vector<SegmentNumber>& segment_numbers();
 /// [[tool]], [[joint.shank]], holder.segments and [[holder.artefact]].

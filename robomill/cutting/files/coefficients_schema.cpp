@@ -30,16 +30,22 @@ std::vector<Row<CoefficientKeys>> rows() {
                                      "measure of edge forces; default: width on a flat end, edge length on others")),
        key("file", &CoefficientKeys::file, "a file with such a table, in place of it"),
        key("material", &CoefficientKeys::material, "or a material by its name; edge coefficients replace its own"),
-       key("set", &CoefficientKeys::set, "of the material's published sets, from 1").at_least(1.0),
-       key("radial_ratio", &CoefficientKeys::radial_ratio, "radial over tangential, where the set has the latter alone")
+       key("set", &CoefficientKeys::set,
+           "of the material's published sets, from 1; without it the one that suits the cutter best")
+           .at_least(1.0),
+       key("radial_ratio", &CoefficientKeys::radial_ratio,
+           "radial over tangential: required where the source of the set states the latter alone; 0.16 to 0.6 where "
+           "sources state both")
            .at_least(0.0)
            .at_most(2.0),
        key("chip_thickness_mm", &CoefficientKeys::chip_thickness_m,
-           "mean chip, at which a power of it or orthogonal tests are taken")
+           "chip at which a power F = k b h (h / 1 mm)^-m has its tangent taken, or orthogonal tests; without it the "
+           "mean chip of the cut, which needs an upright flat end with its feed, depth and direction")
            .above(0.0),
-       key("rake_deg", &CoefficientKeys::rake_rad, "of the edge: by the material's orthogonal tests"),
+       key("rake_deg", &CoefficientKeys::rake_rad,
+           "of the edge: by the material's orthogonal tests in place of a published set"),
        key(helix_key, &CoefficientKeys::helix_rad, "the same; without it the tool's"),
-       key("scale", &CoefficientKeys::scale, "factor of all coefficients of a material or a file")
+       key("scale", &CoefficientKeys::scale, "factor of all coefficients of a material or a file, edge ones too")
            .above(0.0)
            .at_most(10.0)
            .slider(0.1, 3.0, 0.01)});

@@ -36,7 +36,8 @@ inline constexpr std::array<ForceCoefficient, 6> force_coefficients = {{
      &MillingCoefficients::tangential_n_per_m2},
     {"radial_n_per_mm2", "the same; of drilling the thrust normal to the lip", &MillingCoefficients::radial_n_per_m2},
     {"axial_n_per_mm2", "the same, > 0 pushes the tool towards the spindle", &MillingCoefficients::axial_n_per_m2},
-    {"tangential_edge_n_per_mm", "force of the edges", &MillingCoefficients::tangential_edge_n_per_m, true},
+    {"tangential_edge_n_per_mm", "force of the edges, of forces, simulations and the surface error",
+     &MillingCoefficients::tangential_edge_n_per_m, true},
     {"radial_edge_n_per_mm", "the same", &MillingCoefficients::radial_edge_n_per_m, true},
     {"axial_edge_n_per_mm", "the same", &MillingCoefficients::axial_edge_n_per_m, true},
 }};

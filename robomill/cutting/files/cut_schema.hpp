@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "robomill/cutting/engagement.hpp"
@@ -10,7 +11,8 @@
 namespace robomill::cutting {
 
 /// The step-over: a key of [cut], of a chart and of results.
-inline constexpr const char* radial_depth_key = "radial_depth_mm";
+inline constexpr const char* radial_depth_of_cut = "cut.radial_depth_mm";
+inline constexpr const char* radial_depth_key = radial_depth_of_cut + std::string_view("cut.").size();
 
 /// [cut]: how the cutter goes through the material. Which keys must be given depends on the verb.
 struct CutTable {

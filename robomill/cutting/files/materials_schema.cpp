@@ -1,7 +1,6 @@
 #include "robomill/cutting/files/materials_schema.hpp"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
@@ -23,18 +22,16 @@ constexpr Name<CutterKind> stated_kinds[] = {{"flat-end", CutterKind::flat_end},
 
 /// A text that is there.
 template <class T>
-Row<T> text_key(std::string name, std::string T::*member, std::string meaning) {
-  return key(std::move(name), member, std::move(meaning))
-      .required()
-      .read_by([member](io::TomlFile& file, const std::string& path, T& out) {
-        file.text(path, out.*member);
-        if ((out.*member).empty()) throw file.reject(path, "must not be empty");
-      });
+Row<T> text_key(const std::string& name, std::string T::*member, const std::string& meaning) {
+  return key(name, member, meaning).required().read_by([member](io::TomlFile& file, const std::string& path, T& out) {
+    file.text(path, out.*member);
+    if ((out.*member).empty()) throw file.reject(path, "must not be empty");
+  });
 }
 
 template <class T>
-Row<T> range_key(std::string name, std::optional<FromTo> T::*member, std::string meaning) {
-  Row<T> row = key(std::move(name), member, std::move(meaning));
+Row<T> range_key(const std::string& name, std::optional<FromTo> T::*member, const std::string& meaning) {
+  Row<T> row = key(name, member, meaning);
   const double factor = row.factor;
   return row.entries(2).at_least(0.0).read_by([=](io::TomlFile& file, const std::string& path, T& out) {
     std::vector<double> values;
@@ -55,9 +52,8 @@ Row<PublishedCoefficients> kind_key() {
   });
 }
 
-Row<PublishedCoefficients> line_key(std::string name, std::vector<double> MillingCoefficients::*values) {
-  return of(&PublishedCoefficients::line,
-            key(std::move(name), values, "of a straight line over the chip").entries(1).or_one());
+Row<PublishedCoefficients> line_key(const std::string& name, std::vector<double> MillingCoefficients::*values) {
+  return of(&PublishedCoefficients::line, key(name, values, "of a straight line over the chip").entries(1).or_one());
 }
 
 const Schema<PublishedCoefficients>& set_table() {

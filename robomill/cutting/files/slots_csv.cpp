@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -189,10 +188,9 @@ struct FitView {
 };
 
 /// A number of each direction of the fit.
-Row<FitView> each_key(std::string name, double CoefficientPair::*value, std::string meaning) {
+Row<FitView> each_key(const std::string& name, double CoefficientPair::*value, const std::string& meaning) {
   return key(
-      std::move(name), [value](const FitView& view) { return of_each(*view.fit, value); }, each_table(),
-      std::move(meaning));
+      name, [value](const FitView& view) { return of_each(*view.fit, value); }, each_table(), meaning);
 }
 
 std::vector<FittedSlot> slots_of(const FitView& view) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <utility>
 
 #include "robomill/base/units.hpp"
 #include "robomill/decision/files/result_schema.hpp"
@@ -71,11 +70,11 @@ const Schema<modal::Mode>& tool_mode_table() {
 }
 
 /// A number of a tool that did not fail.
-Row<ToolResult> tool_number(std::string name, double ToolResult::*member, std::string meaning) {
+Row<ToolResult> tool_number(const std::string& name, double ToolResult::*member, const std::string& meaning) {
   const auto value = [member](const ToolResult& tool) {
     return tool.failure.empty() ? std::optional(tool.*member) : std::nullopt;
   };
-  return key(std::move(name), value, std::move(meaning)).nullable();
+  return key(name, value, meaning).nullable();
 }
 
 const Schema<ToolResult>& tool_row_table() {

@@ -8,8 +8,9 @@
 namespace robomill::io {
 namespace {
 
+/// Names without their units.
 struct Synonym {
-  std::string_view written;    ///< without its unit
+  std::string_view written;
   std::string_view last;       ///< of the key that it means
   std::string_view more = {};  ///< how to say it with that key
 };
@@ -24,18 +25,18 @@ constexpr Synonym synonyms[] = {
     {"number_of_flutes", "teeth"},
     {"number_of_teeth", "teeth"},
     {"z", "teeth"},
-    {"ae", "radial_depth_mm"},
-    {"width_of_cut", "radial_depth_mm"},
-    {"radial_depth_of_cut", "radial_depth_mm"},
-    {"ap", "axial_depth_mm"},
-    {"depth_of_cut", "axial_depth_mm"},
-    {"axial_depth_of_cut", "axial_depth_mm"},
-    {"fz", "feed_per_tooth_mm"},
-    {"chip_load", "feed_per_tooth_mm"},
-    {"vc", "cutting_speed_m_per_min"},
-    {"vc", "spindle_speed_rpm", rpm_of_cutting_speed},
-    {"cutting_speed", "spindle_speed_rpm", rpm_of_cutting_speed},
-    {"rpm", "spindle_speed_rpm"},
+    {"ae", "radial_depth"},
+    {"width_of_cut", "radial_depth"},
+    {"radial_depth_of_cut", "radial_depth"},
+    {"ap", "axial_depth"},
+    {"depth_of_cut", "axial_depth"},
+    {"axial_depth_of_cut", "axial_depth"},
+    {"fz", "feed_per_tooth"},
+    {"chip_load", "feed_per_tooth"},
+    {"vc", "cutting_speed"},
+    {"vc", "spindle_speed", rpm_of_cutting_speed},
+    {"cutting_speed", "spindle_speed", rpm_of_cutting_speed},
+    {"rpm", "spindle_speed"},
     {"max_power", "curve", curve},
     {"power", "curve", curve},
     {"max_torque", "curve", curve},
@@ -59,7 +60,7 @@ bool spells(std::string_view name, std::string_view written) {
 
 bool is_written_for(std::string_view name, std::string_view last) {
   for (const Synonym& synonym : synonyms) {
-    if (synonym.last == last && spells(name, synonym.written)) return true;
+    if (synonym.last == key_unit(last).name && spells(name, synonym.written)) return true;
   }
   return false;
 }
@@ -70,9 +71,10 @@ std::string synonym_hint(std::string_view key, const std::set<std::string, std::
     if (!spells(last_of(key), synonym.written)) continue;
     std::string found;
     for (const std::string& candidate : known) {
-      if (last_of(candidate) != synonym.last) continue;
-      if (candidate.substr(0, candidate.size() - synonym.last.size()) == table) {
-        found = synonym.last;
+      const std::string_view last = last_of(candidate);
+      if (key_unit(last).name != synonym.last) continue;
+      if (candidate.substr(0, candidate.size() - last.size()) == table) {
+        found = last;
         break;
       }
       if (found.empty() && candidate.find('[') == std::string::npos) found = candidate;

@@ -56,7 +56,8 @@ TEST(Schemas, OfAnUnknownDocumentNamesTheKnownOnes) {
 // One table of a document, whichever of them; several readers know a part of [tool].
 TEST(Schemas, OfTomlDocumentsHaveTheTablesOfTheirReaders) {
   const std::string table = schema_table("job.toml spindle tool");
-  for (const char* key : {"`spindle.curve[].power_kw` | kW | required", "`tool.teeth`", "`tool.max_axial_depth_mm`"})
+  for (const char* key :
+       {"`spindle.curve[].power_kw` | kW, >= 0 | required", "`tool.teeth`", "`tool.max_axial_depth_mm`"})
     EXPECT_NE(table.find(key), std::string::npos) << key << table;
   EXPECT_EQ(table.find("safety"), std::string::npos);
   for (const char* name : {"lobes.toml", "job.toml", "forces.toml", "cell.toml", "hits.toml", "monitor.toml"}) {

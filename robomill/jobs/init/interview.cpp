@@ -13,6 +13,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cell/files/known_arms.hpp"
+#include "robomill/cutting/files/cut_schema.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml/edit.hpp"
@@ -353,7 +354,7 @@ void Interview::State::finish() {
   }
   if (answers.contains("direction") && answers["direction"] == "slot" && answers.contains("diameter")) {
     for (const Template document : {Template::lobes, Template::forces}) {
-      set(document, "cut.radial_depth_mm", answers["diameter"]);
+      set(document, cutting::radial_depth_of_cut, answers["diameter"]);
     }
   }
 }

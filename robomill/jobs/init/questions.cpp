@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "robomill/cutting/files/cut_schema.hpp"
+
 namespace robomill::jobs {
 namespace {
 
@@ -77,7 +79,7 @@ constexpr Question all_questions[] = {
      .kind = Answer::direction,
      .targets = {{Template::lobes, "cut.direction"}, {Template::forces, "cut.direction"}}},
     quantity("radial depth", "Radial depth (ae)", Quantity::length, 1e-3, 1000.0,
-             {{Template::lobes, "cut.radial_depth_mm"}, {Template::forces, "cut.radial_depth_mm"}}),
+             {{Template::lobes, cutting::radial_depth_of_cut}, {Template::forces, cutting::radial_depth_of_cut}}),
     quantity("axial depth", "Axial depth (ap)", Quantity::length, 1e-3, 1000.0,
              {{Template::forces, "cut.axial_depth_mm"}}),
     quantity("deepest", "Deepest cut to look at (ap)", Quantity::length, 1e-3, 1000.0,

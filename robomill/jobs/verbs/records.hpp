@@ -35,9 +35,10 @@ template <class Result>
 Outcome outcome_of(Result result, std::string json = {}) {
   using jobs::summary;  // a result may bring its own
   auto kept = std::make_shared<const Result>(std::move(result));
-  return {.shortfall = shortfall(*kept), .summary = summary(*kept), .json = std::move(json), .page = [kept] {
-            return page_of(*kept);
-          }};
+  Outcome out = {
+      .shortfall = shortfall(*kept), .summary = summary(*kept), .json = {}, .page = [kept] { return page_of(*kept); }};
+  out.json = std::move(json);
+  return out;
 }
 
 /// Writes what was found where the job asks for it.

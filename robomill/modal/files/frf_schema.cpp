@@ -97,9 +97,9 @@ std::vector<Row<FrfResult>> hits_keys() {
 }
 
 /// A list of each FRF that has one.
-Row<FrfView> known_of(std::string name, Eigen::VectorXd Frf::*member, std::string meaning) {
+Row<FrfView> known_of(const std::string& name, Eigen::VectorXd Frf::*member, const std::string& meaning) {
   return key(
-             std::move(name),
+             name,
              [member](const FrfView& view) {
                ByFrf<Eigen::VectorXd> out;
                for (const Frf& frf : view.set->frfs) {
@@ -107,17 +107,17 @@ Row<FrfView> known_of(std::string name, Eigen::VectorXd Frf::*member, std::strin
                }
                return out;
              },
-             std::move(meaning))
+             meaning)
       .exact()
       .nullable();
 }
 
 /// What is known of predicted FRFs alone.
 template <class M>
-Row<FrfView> doubt(std::string name, M FrfDoubts::*member, std::string meaning) {
+Row<FrfView> doubt(const std::string& name, M FrfDoubts::*member, const std::string& meaning) {
   return where([](const FrfView& view) { return view.doubts != nullptr; },
                key(
-                   std::move(name), [member](const FrfView& view) { return view.doubts->*member; }, std::move(meaning))
+                   name, [member](const FrfView& view) { return view.doubts->*member; }, meaning)
                    .exact());
 }
 

@@ -23,8 +23,9 @@ template <class List>
 
 /// A word, or none: where the function gives an empty text.
 template <class F>
-[[nodiscard]] auto word_key(std::string name, F value, std::vector<std::string> words, std::string meaning) {
-  return io::key(std::move(name), std::move(value), std::move(meaning)).words(std::move(words)).nullable();
+[[nodiscard]] auto word_key(const std::string& name, F value, std::vector<std::string> words,
+                            const std::string& meaning) {
+  return io::key(name, std::move(value), meaning).words(std::move(words)).nullable();
 }
 
 /// "state", and "reason" why the monitor is blind. @param of  (const T&) -> State and BlindReason

@@ -24,16 +24,15 @@ using io::of;
 using io::Row;
 
 /// A number of the last decision.
-Row<MonitorEvent> of_decision(std::string name, double Decision::*member, std::string meaning) {
-  return of(&MonitorEvent::decision, key(std::move(name), member, std::move(meaning)).nullable());
+Row<MonitorEvent> of_decision(const std::string& name, double Decision::*member, const std::string& meaning) {
+  return of(&MonitorEvent::decision, key(name, member, meaning).nullable());
 }
 
 /// The same of one that is > 0.
 template <class F>
-Row<MonitorEvent> positive(std::string name, F value, std::string meaning) {
+Row<MonitorEvent> positive(const std::string& name, F value, const std::string& meaning) {
   return key(
-             std::move(name), [value](const MonitorEvent& event) { return if_positive(value(event)); },
-             std::move(meaning))
+             name, [value](const MonitorEvent& event) { return if_positive(value(event)); }, meaning)
       .nullable();
 }
 

@@ -25,7 +25,7 @@ void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
 
 void require_engagement(const io::TomlFile& file, const cutting::CutTable& cut, const cutting::FlatEndMill& tool,
                         cutting::CutterKind kind, const char* direction_hint) {
-  const std::string radial = std::string("cut.") + cutting::radial_depth_key;
+  const std::string radial = cutting::radial_depth_of_cut;
   if (!cut.direction) file.require("cut.direction", direction_hint);
   if (*cut.direction != cutting::MillingDirection::slot) {
     if (!cut.radial_depth_m) file.require(radial);

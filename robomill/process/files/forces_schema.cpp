@@ -45,13 +45,13 @@ Row<ForcesLine> of_force(Row<cutting::BlockForce> row) {
 
 /// A number that needs a robot.
 template <class F>
-Row<ForcesLine> of_robot(std::string name, F value, std::string meaning) {
+Row<ForcesLine> of_robot(const std::string& name, F value, const std::string& meaning) {
   return key(
-             std::move(name),
+             name,
              [value](const ForcesLine& at) {
                return at.result->joints.size() > 0 ? std::optional<double>(value(*at.result)) : std::nullopt;
              },
-             std::move(meaning))
+             meaning)
       .nullable();
 }
 

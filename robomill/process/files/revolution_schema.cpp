@@ -62,9 +62,9 @@ struct RotationView {
 
 /// A list of what is known of each turn; null where the robot cannot stand so, or hold the force.
 template <class F>
-Row<RotationView> of_turns(std::string name, F value, std::string meaning) {
+Row<RotationView> of_turns(const std::string& name, F value, const std::string& meaning) {
   return key(
-             std::move(name),
+             name,
              [value](const RotationView& view) {
                std::vector<std::optional<double>> out;
                for (const robot::RedundancySample& sample : view.rotation->samples) {
@@ -73,7 +73,7 @@ Row<RotationView> of_turns(std::string name, F value, std::string meaning) {
                }
                return out;
              },
-             std::move(meaning))
+             meaning)
       .nullable();
 }
 

@@ -299,8 +299,8 @@ struct GeometryReading {
 /// A key whose tables, or files, code reads.
 /// @param code  (GeometryReading&, io::TomlFile&, path of the key)
 template <class U, class F>
-Row<GeometryReading> bodies_key(std::string name, const Schema<U>& table, std::string meaning, F code) {
-  Row<GeometryReading> row = declared<GeometryReading>(std::move(name), Holds::table, std::move(meaning), 1);
+Row<GeometryReading> bodies_key(const std::string& name, const Schema<U>& table, const std::string& meaning, F code) {
+  Row<GeometryReading> row = declared<GeometryReading>(name, Holds::table, meaning, 1);
   row.key.table = &table.info();
   return row.read_by([code](io::TomlFile& file, const std::string& path, GeometryReading& reading) {
     std::invoke(code, reading, file, path);
@@ -308,8 +308,9 @@ Row<GeometryReading> bodies_key(std::string name, const Schema<U>& table, std::s
 }
 
 /// The same, one or more that stand still.
-Row<GeometryReading> still_key(std::string name, std::vector<Body> CellGeometry::*list, std::string meaning) {
-  return bodies_key(std::move(name), body_table(), std::move(meaning),
+Row<GeometryReading> still_key(const std::string& name, std::vector<Body> CellGeometry::*list,
+                               const std::string& meaning) {
+  return bodies_key(name, body_table(), meaning,
                     [list](GeometryReading& reading, io::TomlFile& file, const std::string& path) {
                       reading.out.*list = reading.bodies(file, path);
                     })

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
@@ -23,15 +22,15 @@ using View = StiffnessView;
 
 /// A list with an entry a joint.
 template <class F>
-Row<View> of_joints(std::string name, F value, std::string meaning) {
+Row<View> of_joints(const std::string& name, F value, const std::string& meaning) {
   return key(
-      std::move(name),
+      name,
       [value](const View& view) {
         std::vector<decltype(value(view.found->joints.front()))> out;
         for (const IdentifiedJoint& joint : view.found->joints) out.push_back(value(joint));
         return out;
       },
-      std::move(meaning));
+      meaning);
 }
 
 const Schema<IdentifiedStiffness>& convergence_table() {

@@ -1,6 +1,5 @@
 #pragma once
 #include <string>
-#include <utility>
 
 #include "robomill/io/schema.hpp"
 #include "robomill/signal/bands.hpp"
@@ -16,14 +15,14 @@ struct BandView {
 
 /// A key that holds a band in the unit of its name.
 template <class T>
-[[nodiscard]] io::Row<T> band_key(std::string name, Band T::*member, std::string meaning) {
+[[nodiscard]] io::Row<T> band_key(const std::string& name, Band T::*member, const std::string& meaning) {
   const double unit = io::key_unit(name).factor;
   return io::key(
-      std::move(name),
+      name,
       [member, unit](const T& object) {
         return BandView{&(object.*member), unit};
       },
-      band_table(), std::move(meaning));
+      band_table(), meaning);
 }
 
 /// {"low": […], "high": […]} in a shop unit.

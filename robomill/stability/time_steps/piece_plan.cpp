@@ -16,6 +16,7 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t most_groups = most_nodes / lane_count;  // of eight nodes
 constexpr std::size_t most_ends = most_nodes + 1;
+constexpr std::size_t most_integrals = most_ends * most_groups;
 
 /// Lagrange values that depend on the numbers of nodes and quadrature points alone. The last end is that of the piece.
 struct Table {
@@ -119,29 +120,85 @@ CORE void add_mode_core(ModeArguments& a, std::size_t lane) {
 }
 ROBOMILL_KERNEL(add_mode, ModeArguments)
 
+/// The quadrature of a piece, to each of its ends.
+struct Quadrature {
+  using Points = std::array<double, most_gauss_points>;
+  std::size_t points = 0;
+  std::array<double, most_ends> end_s = {};
+  std::array<Points, most_ends> before_s = {}, weight_s = {};
+};
+
+void quadrature_of(const Table& t, const Rotation& rotation, double from_rad, double length_rad, Quadrature& out) {
+  const double start = rotation.time_s(from_rad);
+  out.points = t.quadrature->node.size();
+  for (std::size_t i = 0; i < t.end.size(); ++i) {
+    out.end_s[i] = rotation.time_s(from_rad + t.end[i] * length_rad) - start;
+    for (std::size_t q = 0; q < out.points; ++q) {
+      const double angle = from_rad + t.end[i] * t.quadrature->node[q] * length_rad;
+      out.before_s[i][q] = rotation.even() ? out.end_s[i] * (1.0 - t.quadrature->node[q])
+                                           : out.end_s[i] - (rotation.time_s(angle) - start);
+      out.weight_s[i][q] = t.quadrature->weight[q] * t.end[i] * length_rad / rotation.speed_rad_per_s(angle);
+    }
+  }
+}
+
+/// What add_mode fills.
+struct Integrals {
+  std::size_t groups = 1;
+  std::array<Lanes, most_integrals> real = {}, imaginary = {};
+  /// To end i of what acts at node l.
+  [[nodiscard]] Complex operator()(std::size_t i, std::size_t l) const {
+    const std::size_t at = i * groups + l / lane_count;
+    return {real[at].v[l % lane_count], imaginary[at].v[l % lane_count]};
+  }
+};
+
+/// Mode k in a plan, but for its response.
+template <int D>
+void put_mode(const TipDynamicsIn<D>& tip, Eigen::Index k, const Integrals& integral,
+              const std::array<double, most_ends>& end_s, bool velocities, PiecePlan& out) {
+  using Vector = Eigen::Matrix<Complex, D, 1>;
+  const std::size_t p = static_cast<std::size_t>(out.nodes());
+  const Complex pole = tip.pole(k);
+  const Vector right = tip.right.col(k);
+  const Vector left = tip.left.col(k);
+  out.factor(k) = exponential(pole * end_s[p]);
+  for (std::size_t l = 0; l < p; ++l) {
+    const Eigen::Index column = D * static_cast<Eigen::Index>(l);
+    const Eigen::Matrix<Complex, 1, D> driven = integral(p, l) * left.transpose();
+    out.influence.template block<1, D>(2 * k, column) = driven.real();
+    out.influence.template block<1, D>(2 * k + 1, column) = driven.imag();
+  }
+  for (std::size_t i = 0; i < p; ++i) {
+    const Eigen::Index row = D * static_cast<Eigen::Index>(i);
+    const Complex decay_to_end = exponential(pole * end_s[i]);
+    const Vector moved = right * decay_to_end;
+    out.at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moved.real();
+    out.at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moved.imag();
+    if (!velocities) continue;
+    const Vector moving = right * (pole * decay_to_end);
+    out.velocity_at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moving.real();
+    out.velocity_at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moving.imag();
+    const Eigen::Matrix<Complex, D, D> residue = right * left.transpose();
+    for (std::size_t l = 0; l < p; ++l) {
+      const Complex w = pole * integral(i, l) + (l == i ? 1.0 : 0.0);
+      out.velocity_response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) += 2.0 * (residue * w).real();
+    }
+  }
+}
+
 }  // namespace
 
 template <int D>
 void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double from_rad, double length_rad, int nodes,
                 bool velocities, PiecePlan& out) {
-  using Vector = Eigen::Matrix<Complex, D, 1>;
   const double radians = tip.pole.cwiseAbs().maxCoeff() * length_rad / rotation.slowest_rad_per_s();
   const Table& t = table(nodes, radians);
   const std::size_t p = static_cast<std::size_t>(nodes);
-  const std::size_t points = t.quadrature->node.size();
   const Eigen::Index n = tip.pole.size();
-  const double start = rotation.time_s(from_rad);
-  std::array<double, most_ends> end_s = {};
-  std::array<std::array<double, most_gauss_points>, most_ends> before_s, weight_s;  // of quadrature, to each end
-  for (std::size_t i = 0; i <= p; ++i) {
-    end_s[i] = rotation.time_s(from_rad + t.end[i] * length_rad) - start;
-    for (std::size_t q = 0; q < points; ++q) {
-      const double angle = from_rad + t.end[i] * t.quadrature->node[q] * length_rad;
-      before_s[i][q] =
-          rotation.even() ? end_s[i] * (1.0 - t.quadrature->node[q]) : end_s[i] - (rotation.time_s(angle) - start);
-      weight_s[i][q] = t.quadrature->weight[q] * t.end[i] * length_rad / rotation.speed_rad_per_s(angle);
-    }
-  }
+  Quadrature quadrature;
+  quadrature_of(t, rotation, from_rad, length_rad, quadrature);
+  const std::array<double, most_ends>& end_s = quadrature.end_s;
   out.length_rad = length_rad;
   out.duration_s = end_s[p];
   out.time_s.assign(end_s.begin(), end_s.begin() + nodes);
@@ -155,55 +212,27 @@ void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double fr
   out.influence.resize(2 * n, D * nodes);
   out.velocity_at_nodes.resize(velocities ? D * nodes : 0, 2 * n);
   out.velocity_response.setZero(velocities ? D * nodes : 0, D * nodes);
-  std::array<Decays, most_ends> decay;
-  std::array<Lanes, most_ends * most_groups> real, imaginary;
-  std::array<Lanes, most_nodes * D * D * most_groups> response;
-  std::fill_n(response.begin(), p * D * D * t.groups, Lanes{});
-  ModeArguments arguments = {.ends = p + 1, .points = points, .groups = t.groups, .entries = D * D};
+  std::array<Decays, most_ends> decay = {};
+  Integrals integral;
+  integral.groups = t.groups;
+  std::array<Lanes, most_nodes* D* D* most_groups> response = {};
+  ModeArguments arguments = {.ends = p + 1, .points = quadrature.points, .groups = t.groups, .entries = D * D};
   arguments.value = t.value.data();
   arguments.decay = &decay;
-  arguments.real = real.data();
-  arguments.imaginary = imaginary.data();
+  arguments.real = integral.real.data();
+  arguments.imaginary = integral.imaginary.data();
   arguments.response = response.data();
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Complex pole = tip.pole(k);
-    const Vector right = tip.right.col(k);
-    const Vector left = tip.left.col(k);
-    const Eigen::Matrix<Complex, D, D> residue = right * left.transpose();
+    const Eigen::Matrix<Complex, D, D> residue = tip.right.col(k) * tip.left.col(k).transpose();
     const Eigen::Matrix<double, D, D> residue_real = residue.real(), residue_imaginary = residue.imag();
     for (std::size_t i = 0; i <= p; ++i) {
-      decays(pole, before_s[i], points, rotation.even(), decay[i]);
-      for (std::size_t q = 0; q < points; ++q) decay[i][q] *= weight_s[i][q];
+      decays(tip.pole(k), quadrature.before_s[i], quadrature.points, rotation.even(), decay[i]);
+      for (std::size_t q = 0; q < quadrature.points; ++q) decay[i][q] *= quadrature.weight_s[i][q];
     }
     arguments.residue_real = residue_real.data();
     arguments.residue_imaginary = residue_imaginary.data();
     add_mode(arguments);
-    const auto integral = [&](std::size_t i, std::size_t l) {
-      const std::size_t at = i * t.groups + l / lane_count;
-      return Complex(real[at].v[l % lane_count], imaginary[at].v[l % lane_count]);
-    };
-    out.factor(k) = exponential(pole * end_s[p]);
-    for (std::size_t l = 0; l < p; ++l) {
-      const Eigen::Index column = D * static_cast<Eigen::Index>(l);
-      const Eigen::Matrix<Complex, 1, D> driven = integral(p, l) * left.transpose();
-      out.influence.template block<1, D>(2 * k, column) = driven.real();
-      out.influence.template block<1, D>(2 * k + 1, column) = driven.imag();
-    }
-    for (std::size_t i = 0; i < p; ++i) {
-      const Eigen::Index row = D * static_cast<Eigen::Index>(i);
-      const Complex decay_to_end = exponential(pole * end_s[i]);
-      const Vector moved = right * decay_to_end;
-      out.at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moved.real();
-      out.at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moved.imag();
-      if (!velocities) continue;
-      const Vector moving = right * (pole * decay_to_end);
-      out.velocity_at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * moving.real();
-      out.velocity_at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * moving.imag();
-      for (std::size_t l = 0; l < p; ++l) {
-        const Complex w = pole * integral(i, l) + (l == i ? 1.0 : 0.0);
-        out.velocity_response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) += 2.0 * (residue * w).real();
-      }
-    }
+    put_mode(tip, k, integral, end_s, velocities, out);
   }
   for (std::size_t i = 0; i < p; ++i) {
     for (std::size_t l = 0; l < p; ++l) {
