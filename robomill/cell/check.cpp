@@ -125,7 +125,8 @@ void note_what_is_open(const Targets& targets, CellCheck& out, Progress& progres
 }  // namespace
 
 CellCheck run_cell_check(const CellCheckJob& job, Progress& progress) {
-  return run_cell_check(job, read_cell(job.cell, Robots::any), progress);
+  CellFile file = read_cell(job.cell, Robots::any);
+  return run_cell_check(job, std::move(static_cast<Cell&>(file)), progress);
 }
 
 CellCheck run_cell_check(const CellCheckJob& job, Cell read, Progress& progress) {

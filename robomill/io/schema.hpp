@@ -283,8 +283,8 @@ class Schema {
   /// @param version  of a document
   Schema(std::string name, std::string meaning, std::vector<Row<T>> rows, Use use = Use::read, int version = 0)
       : rows_(std::move(rows)) {
-    info_.name = name;
-    info_.meaning = meaning;
+    info_.name = std::move(name);
+    info_.meaning = std::move(meaning);
     info_.use = use;
     info_.version = version;
     info_.keys.reserve(rows_.size());

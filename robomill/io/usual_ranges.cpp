@@ -152,6 +152,8 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"accelerometer_mass_kg", 1e-4, 0.2},
     {"force_overload_n", 10, 100'000},
     {"response_overload_m_per_s2", 10, 1e6},
+    {"response_overload_m_per_s", 0.01, 1000},
+    {"response_overload_m", 1e-5, 1},
     {"min_frequency_hz", 0.1, 10'000},
     {"max_frequency_hz", 10, 50'000},
     {"frequency_resolution_hz", 0.01, 100},

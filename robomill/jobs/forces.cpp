@@ -15,7 +15,7 @@ std::optional<cell::Cell> cell_of(const process::ForcesFile& forces, std::option
 
 /// The cut, with all that its file leaves to a default.
 process::Cut cut_of(const process::ForcesFile& forces, bool with_cell) {
-  process::Cut cut = forces;
+  process::Cut cut = static_cast<const process::Cut&>(forces);
   cut.assumed = assumed_of(forces, with_cell);
   return cut;
 }

@@ -33,6 +33,7 @@ struct Of {
 template <class Part>
 std::vector<Of<Part>> each(const CellCheck& check, const std::vector<Part>& parts) {
   std::vector<Of<Part>> out;
+  out.reserve(parts.size());
   for (const Part& part : parts) out.push_back({&check, &part});
   return out;
 }
@@ -141,6 +142,7 @@ std::optional<int> number_of(int joint) {
 /// In the unit of each joint; null: it can be anywhere.
 std::vector<std::optional<double>> by_joint(const Of<CellStand>& at, const robot::Position6& values) {
   std::vector<std::optional<double>> out;
+  out.reserve(static_cast<std::size_t>(at.check->joints));
   for (int i = 0; i < at.check->joints; ++i) out.push_back(limit(values(i), at.unit(i)));
   return out;
 }
@@ -373,6 +375,7 @@ const Schema<CellCheck>& check_table() {
            "joints",
            [](const CellCheck& check) {
              std::vector<JointAt> out;
+             out.reserve(static_cast<std::size_t>(check.joints));
              for (int i = 0; i < check.joints; ++i) out.push_back({&check, i});
              return out;
            },

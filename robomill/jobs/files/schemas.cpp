@@ -56,12 +56,8 @@ const TableInfo* kept(TableInfo info) {
 
 /// A table of a TOML document. @param lists  1: [[hits]]
 template <class T>
-Key table(std::string name, const io::Schema<T>& rows, int lists = 0) {
-  return {.name = std::move(name),
-          .holds = Holds::table,
-          .lists = lists,
-          .table = &rows.info(),
-          .meaning = rows.info().meaning};
+Key table(const std::string& name, const io::Schema<T>& rows, int lists = 0) {
+  return {.name = name, .holds = Holds::table, .lists = lists, .table = &rows.info(), .meaning = rows.info().meaning};
 }
 
 /// Tables in their order. Those of one name are one, of which each reader knows a part.
@@ -152,8 +148,8 @@ std::vector<Key> recordings_tables() {
 }
 
 /// A document of these tables, each of which may be in a file that it includes.
-TableInfo toml_document(std::string name, std::string meaning, const std::vector<Key>& tables) {
-  TableInfo out{.name = std::move(name), .meaning = std::move(meaning), .several_files = true};
+TableInfo toml_document(const std::string& name, const std::string& meaning, const std::vector<Key>& tables) {
+  TableInfo out{.name = name, .meaning = meaning, .several_files = true};
   out.keys = {{.name = "include",
                .holds = Holds::path,
                .lists = 1,
