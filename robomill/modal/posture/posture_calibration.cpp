@@ -24,7 +24,7 @@ void add(Digest& out, const Eigen::Ref<const Eigen::VectorXcd>& values) {
 }
 
 void add(Digest& out, const Eigen::Isometry3d& pose) {
-  const Eigen::Matrix4d matrix = pose.matrix();
+  const Eigen::Matrix4d& matrix = pose.matrix();
   add(out, Eigen::Map<const Eigen::VectorXd>(matrix.data(), matrix.size()));
 }
 

@@ -160,7 +160,7 @@ CORE C3 times(const std::array<double, 9>& a, const C3& x) {
   return out;
 }
 CORE C3 load3(const Lanes* matrix, std::size_t lane) {
-  C3 out;
+  C3 out = {};
   for (std::size_t e = 0; e < 9; ++e) out.v[e / 3][e % 3] = load<V>(matrix + 2 * e, lane);
   return out;
 }
@@ -320,7 +320,7 @@ ROBOMILL_KERNEL(run_lines, FlexibleArm::ReceptanceLines::Work)
 
 /// By rows.
 std::array<double, 9> in_rows(const Eigen::Matrix3d& matrix) {
-  std::array<double, 9> out;
+  std::array<double, 9> out = {};
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(out.data()) = matrix;
   return out;
 }
@@ -412,7 +412,7 @@ void FlexibleArm::ReceptanceLines::evaluate(const Lanes& re, const Lanes& im, Sy
 }
 
 void FlexibleArm::ReceptanceLines::evaluate(std::span<const std::complex<double>> s) {
-  Lanes re, im, farther, weight, less;
+  Lanes re = {}, im = {}, farther = {}, weight = {}, less = {};
   bool smoothed = false;
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     const std::complex<double> at = s[std::min(lane, s.size() - 1)];

@@ -55,7 +55,7 @@ class FlexibleArm::ReceptanceLines {
   std::array<double, 6> compliance_ = {};
   std::size_t bracket_row_ = 0;
   std::vector<Lanes> lower_, solution_, bodies_, tools_;
-  SymmetricLanes value_, farther_;
+  SymmetricLanes value_ = {}, farther_ = {};
   std::vector<SymmetricLanes> derivative_, farther_derivative_;
 };
 

@@ -370,6 +370,7 @@ const Schema<PostureView>& posture_table() {
            "joints",
            [](const View& view) {
              std::vector<PositionView> out;
+             out.reserve(static_cast<std::size_t>(view.joints));
              for (int i = 0; i < view.joints; ++i)
                out.push_back({view.choice->posture.start(i), view.prismatic->at(static_cast<std::size_t>(i))});
              return out;

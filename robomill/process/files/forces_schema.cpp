@@ -185,6 +185,7 @@ std::vector<ForcesLine> worst_lines(const ForcesResult& forces) {
   std::ranges::stable_sort(order, std::ranges::greater(), &Ranked::first);
   order.resize(std::min(order.size(), most));
   std::vector<ForcesLine> out;
+  out.reserve(order.size());
   for (const Ranked& one : order) out.push_back(one.second);
   return out;
 }
