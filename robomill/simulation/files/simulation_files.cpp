@@ -168,7 +168,7 @@ const Schema<SimulationView>& simulation_table() {
   static const Schema<SimulationView> table(
       "simulation", "what the simulation of a cut found",
       [] {
-        const auto of_result = [](std::vector<Row<Simulation>> rows) {
+        const auto of_result = [](const std::vector<Row<Simulation>>& rows) {
           return io::keys_of<SimulationView>(
               rows, [](const SimulationView& view) -> const Simulation& { return *view.simulation; });
         };
