@@ -39,6 +39,37 @@ TEST(LinearAlgebra, AnswersSolveTheirEquations) {
     EXPECT_LT((svd.u * svd.values.asDiagonal() * svd.v.transpose() - b.transpose()).norm(), 1e-9);
     const ComplexThinSvd wide = thin_svd(c);
     EXPECT_LT((wide.u * wide.values.asDiagonal() * wide.v.adjoint() - c).norm(), 1e-9);
+    const EigenPairs complex_pairs = eigen_pairs(c);
+    ASSERT_TRUE(complex_pairs.converged);
+    EXPECT_LT((c * complex_pairs.vectors - complex_pairs.vectors * complex_pairs.values.asDiagonal()).norm(), 1e-9);
+    EXPECT_LT((c * solve(c, Eigen::MatrixXcd(b)) - b).norm(), 1e-9);
+    const Eigen::MatrixXd positive = a * a.transpose() + one;
+    const Eigen::MatrixXcd hermitian = c * c.adjoint() + one;
+    EXPECT_LT((positive * solve_positive_definite(positive, b) - b).norm(), 1e-9);
+    EXPECT_LT((positive * solve_positive_definite(positive, Eigen::VectorXd(b.col(0))) - b.col(0)).norm(), 1e-9);
+    EXPECT_LT((hermitian * solve_hermitian(hermitian, Eigen::MatrixXcd(b)) - b).norm(), 1e-9);
+    const Cholesky factor = cholesky(positive);
+    EXPECT_TRUE(factor.positive_definite);
+    EXPECT_LT((factor.lower * factor.lower.transpose() - positive).norm(), 1e-9);
+    EXPECT_FALSE(cholesky(-positive).positive_definite);
+  }
+}
+
+// The residual of least squares is normal to the columns; RᵀR = AᵀA.
+TEST(LinearAlgebra, LeastSquaresLeaveWhatIsNormalToTheColumns) {
+  Random random(2);
+  for (Eigen::Index n = 1; n <= 6; ++n) {
+    const Eigen::MatrixXd a = random_matrix(random, 2 * n + 1, n), b = random_matrix(random, 2 * n + 1, 2);
+    const Eigen::VectorXd one = b.col(0);
+    EXPECT_LT((a.transpose() * (a * least_squares(a, one) - one)).norm(), 1e-9);
+    EXPECT_LT((a.transpose() * (a * least_squares_with_pivots(a, one) - one)).norm(), 1e-9);
+    EXPECT_LT((a.transpose() * (a * least_squares_with_pivots(a, b) - b)).norm(), 1e-9);
+    const Eigen::MatrixXcd c = a.cast<std::complex<double>>() * std::complex<double>(0.6, 0.8);
+    const Eigen::VectorXcd x = least_squares_with_pivots(c, Eigen::VectorXcd(one));
+    EXPECT_LT((c.adjoint() * (c * x - one)).norm(), 1e-9);
+    const Eigen::MatrixXd r = qr_triangle(a);
+    EXPECT_TRUE(r.isUpperTriangular(0.0));
+    EXPECT_LT((r.transpose() * r - a.transpose() * a).norm(), 1e-9);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "robomill/cutting/coefficients.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -88,8 +87,7 @@ PairFit fit_pair(const Slots& slots, const Direction& direction, const SlotOptio
   // Columns of one length: cutting and edge parts differ by the feed, 1e-4 m.
   const Eigen::VectorXd size = columns.colwise().norm();
   const Eigen::MatrixXd scaled = columns * size.cwiseInverse().asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  const Eigen::VectorXd solution = qr.solve(force_n);
+  const Eigen::VectorXd solution = linear_algebra::least_squares(scaled, force_n);
   PairFit out{.pair = {}, .residual_n = force_n - scaled * solution};
   const Eigen::Index unknowns = scaled.cols();
   const Eigen::Index left = scaled.rows() - unknowns;

@@ -1,7 +1,5 @@
 #include "robomill/robot/dynamics.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <kdl/chaindynparam.hpp>
@@ -19,8 +17,8 @@ namespace {
 using Complex = std::complex<double>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Cholesky factor of M.
-Eigen::LLT<Eigen::MatrixXd> mass_factor(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
+/// L of M = L Lᵀ.
+Eigen::MatrixXd mass_factor(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
   const Eigen::MatrixXd mass = mass_matrix(arm, position);
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
     if (mass(i, i) > 0.0) continue;
@@ -28,12 +26,12 @@ Eigen::LLT<Eigen::MatrixXd> mass_factor(const Arm& arm, const Eigen::Ref<const E
                        "must be > 0: the joint moves no mass",
                        "Links' masses, centres and inertia, or the drives' rotor inertia, are needed");
   }
-  Eigen::LLT<Eigen::MatrixXd> out(mass);
-  if (out.info() != Eigen::Success) {
+  linear_algebra::Cholesky out = linear_algebra::cholesky(mass);
+  if (!out.positive_definite) {
     throw InvalidInput("joints", "must move masses that make the mass matrix positive definite",
                        "The wrist's links need an inertia, or its drives a rotor inertia");
   }
-  return out;
+  return out.lower;
 }
 
 /// right and left of one pole scaled to one size, and to be equal where they are parallel.
@@ -120,7 +118,7 @@ Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::Vector
 ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
                      const Eigen::Vector3d& point_m) {
   static_cast<void>(stiffness(arm, position, point_m));  // checks what is given
-  const Eigen::LLT<Eigen::MatrixXd> factor = mass_factor(arm, position);
+  const Eigen::MatrixXd factor = mass_factor(arm, position);
   const Jacobian jac = jacobian(arm, position, point_m);
   Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(arm.size(), arm.size()), damping = joint;
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
@@ -128,7 +126,7 @@ ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& po
     damping(i, i) = arm.joints[static_cast<std::size_t>(i)].damping;
   }
   // In y = Lᵀ q with M = L Lᵀ.
-  const auto lower = factor.matrixL();
+  const auto lower = factor.triangularView<Eigen::Lower>();
   const auto normal = [&](const Eigen::MatrixXd& matrix) {
     const Eigen::MatrixXd half = lower.solve(matrix);
     return Eigen::MatrixXd(lower.solve(half.transpose()).transpose());

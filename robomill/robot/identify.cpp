@@ -1,6 +1,5 @@
 #include "robomill/robot/identify.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -93,22 +92,22 @@ class Model {
     Posture posture;
     Eigen::VectorXd& position = position_[k];
     Eigen::VectorXd moment;
-    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+    Eigen::MatrixXd slope;
     constexpr int most_steps = 30;
     constexpr double smallest_step = 1e-15;
     for (int step = 0; step < most_steps; ++step) {
       posture.update(arm_, position);
       posture.jacobian(arm_, posture.flange * point_m_, jac);
       moment = jac.transpose() * force;
-      Eigen::MatrixXd slope = -(compliance.asDiagonal() * load_stiffness(jac, load.wrench));
+      slope = -(compliance.asDiagonal() * load_stiffness(jac, load.wrench));
       slope.diagonal().array() += 1.0;
-      lu.compute(slope);
-      const Eigen::VectorXd change = lu.solve(load.position + compliance.cwiseProduct(moment) - position);
+      const Eigen::VectorXd change =
+          linear_algebra::solve(slope, Eigen::VectorXd(load.position + compliance.cwiseProduct(moment) - position));
       position += change;
       if (!(change.cwiseAbs().maxCoeff() > smallest_step)) break;
     }
     const auto row = 3 * static_cast<Eigen::Index>(k);
-    const Eigen::MatrixXd turned = lu.solve(Eigen::MatrixXd(moment.asDiagonal()));
+    const Eigen::MatrixXd turned = linear_algebra::solve(slope, Eigen::MatrixXd(moment.asDiagonal()));
     matrix.middleRows<3>(row) = jac.topRows<3>() * turned;
     const Eigen::Vector3d moved = posture.flange * point_m_ - forward(arm_, load.position) * point_m_;
     residual.segment<3>(row) = load.displacement_m - moved;

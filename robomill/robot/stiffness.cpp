@@ -1,9 +1,7 @@
 #include "robomill/robot/stiffness.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cstddef>
@@ -11,6 +9,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/robot/condition.hpp"
 
 namespace robomill::robot {
@@ -50,7 +49,7 @@ Eigen::VectorXd joint_stiffness(const Arm& arm) {
 
 bool positive_definite(const Eigen::MatrixXd& matrix) {
   const Eigen::MatrixXd symmetric = 0.5 * (matrix + matrix.transpose());
-  return Eigen::LLT<Eigen::MatrixXd>(symmetric).info() == Eigen::Success;
+  return linear_algebra::cholesky(symmetric).positive_definite;
 }
 
 /// An arm on its way to equilibrium.
@@ -81,7 +80,8 @@ struct Balance {
       Eigen::MatrixXd matrix = -load_stiffness(jacobian, wrench);
       matrix.diagonal() += stiffness;
       if (!positive_definite(matrix)) return false;
-      const Eigen::VectorXd step = -matrix.partialPivLu().solve(stiffness.cwiseProduct(residual_now));
+      const Eigen::VectorXd step =
+          -linear_algebra::solve(matrix, Eigen::VectorXd(stiffness.cwiseProduct(residual_now)));
       position += step;
       const Eigen::VectorXd residual_next = residual(position, wrench);
       if (!residual_next.allFinite()) return false;
@@ -123,9 +123,7 @@ double condition_number(const Eigen::Ref<const Jacobian>& jacobian, double chara
   // A wide matrix has the singular values of the triangle of its transpose.
   Eigen::MatrixXd tall = jacobian.transpose();
   tall.leftCols<3>() /= characteristic_length_m;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(tall);
-  const Eigen::Matrix<double, 6, 6> triangle = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>();
-  return condition_of(triangle, 1.0);
+  return condition_of(linear_algebra::qr_triangle(tall), 1.0);
 }
 
 Eigen::MatrixXd load_stiffness(const Eigen::Ref<const Jacobian>& jacobian, const Wrench& wrench) {
@@ -154,8 +152,8 @@ Stiffness stiffness(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& pos
   joint.diagonal() += joint_stiffness(arm);
   Stiffness out;
   out.condition_number = condition_number(jac, options.characteristic_length_m);
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(joint);
-  out.compliance = jac * lu.solve(jac.transpose());
+  const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = linear_algebra::solve(joint, Eigen::MatrixXd(jac.transpose()));
+  out.compliance = jac * moved;
   if (!positive_definite(joint)) {
     out.status = Stiffness::Status::buckled;
   } else if (out.condition_number > options.max_condition_number) {

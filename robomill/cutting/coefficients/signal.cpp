@@ -1,4 +1,3 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/cutting/coefficients.hpp"
 
 namespace robomill::cutting {
@@ -124,7 +124,7 @@ Eigen::VectorXd scale_of(const Eigen::MatrixXd& design) {
 double misfit(const Model& model, const Signal& signal, double offset_rad) {
   const Eigen::MatrixXd design = model.at(signal.rotation_rad, offset_rad);
   const Eigen::MatrixXd scaled = design * scale_of(design).asDiagonal();
-  const Eigen::VectorXd solution = scaled.colPivHouseholderQr().solve(signal.force_n);
+  const Eigen::VectorXd solution = linear_algebra::least_squares_with_pivots(scaled, signal.force_n);
   return (signal.force_n - scaled * solution).squaredNorm();
 }
 
@@ -187,20 +187,22 @@ struct Solution {
 Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, double tolerance) {
   const Eigen::VectorXd scale = scale_of(design);
   const Eigen::MatrixXd scaled = design * scale.asDiagonal();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(tolerance);
+  const linear_algebra::ThinSvd svd = linear_algebra::thin_svd(scaled);
   const Eigen::Index unknowns = scaled.cols();
   Solution out;
-  out.rank = svd.rank();
-  out.values = svd.solve(force_n).cwiseProduct(scale);
-  out.condition = out.rank > 0 ? svd.singularValues()(0) / svd.singularValues()(out.rank - 1) : HUGE_VAL;
+  const double smallest = std::max(tolerance * svd.values(0), std::numeric_limits<double>::min());
+  out.rank = (svd.values.array() >= smallest).count();
+  const Eigen::VectorXd shares = svd.u.leftCols(out.rank).transpose() * force_n;
+  const Eigen::VectorXd parts = svd.values.head(out.rank).cwiseInverse().cwiseProduct(shares);
+  out.values = (svd.v.leftCols(out.rank) * parts).cwiseProduct(scale);
+  out.condition = out.rank > 0 ? svd.values(0) / svd.values(out.rank - 1) : HUGE_VAL;
   out.deviations.resize(unknowns);
   for (Eigen::Index i = 0; i < unknowns; ++i) {
     double variance = 0.0, lost = 0.0;
     for (Eigen::Index k = 0; k < unknowns; ++k) {
-      const double share = svd.matrixV()(i, k);
+      const double share = svd.v(i, k);
       if (k < out.rank) {
-        variance += std::pow(share / svd.singularValues()(k), 2);
+        variance += std::pow(share / svd.values(k), 2);
       } else {
         lost += share * share;
       }
@@ -210,7 +212,7 @@ Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, do
   for (Eigen::Index k = out.rank; k < unknowns; ++k) {
     std::vector<Eigen::Index>& names = out.mixed.emplace_back();
     for (Eigen::Index i = 0; i < unknowns; ++i) {
-      if (std::abs(svd.matrixV()(i, k)) > 0.05) names.push_back(i);
+      if (std::abs(svd.v(i, k)) > 0.05) names.push_back(i);
     }
   }
   return out;

@@ -1,7 +1,9 @@
 #include "robomill/modal/fitting/fit_atoms.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
+
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::modal::detail {
 
@@ -158,9 +160,9 @@ ScaledCholesky::ScaledCholesky(const MatrixXd& gram) : scale_(gram.rows()) {
   MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
   for (double ridge = smallest_pivot * static_cast<double>(gram.rows());; ridge *= 100.0) {
     scaled.diagonal().setConstant(1.0 + ridge);
-    const Eigen::LLT<MatrixXd> cholesky(scaled);
-    if (cholesky.info() != Eigen::Success && ridge < 1.0) continue;
-    factor_ = cholesky.matrixL();
+    linear_algebra::Cholesky cholesky = linear_algebra::cholesky(scaled);
+    if (!cholesky.positive_definite && ridge < 1.0) continue;
+    factor_ = std::move(cholesky.lower);
     return;
   }
 }

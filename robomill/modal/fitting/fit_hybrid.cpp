@@ -1,10 +1,10 @@
 #include "robomill/modal/fitting/fit_hybrid.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/modal/fitting/fit_noise.hpp"
 #include "robomill/modal/weak_modes.hpp"
 
@@ -118,7 +118,7 @@ void set_deviations(PartFit& fit, const FitData& data) {
   const Index freedom = 2 * data.omega.size() * entries - unknowns;
   if (freedom <= 0) return;
   const double variance = fit.at.cost / static_cast<double>(freedom) * correlation_length(data, fit.at.residual);
-  const Eigen::MatrixXd covariance = fit.at.hessian.inverse() * variance;
+  const Eigen::MatrixXd covariance = linear_algebra::inverse(fit.at.hessian) * variance;
   fit.omega_std.resize(modes);
   fit.zeta_std.resize(modes);
   const Index stride = parameter_count(data, modes) / modes;

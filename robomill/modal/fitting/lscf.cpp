@@ -1,7 +1,5 @@
 #include "robomill/modal/fitting/lscf.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -104,11 +102,12 @@ Fraction solve_fraction(const std::vector<PowerSums>& sums, int order) {
   std::vector<MatrixXcd> back;  // R⁻¹ S of each output
   for (const PowerSums& output : sums) {
     const Normal normal = normal_blocks(output, order);
-    back.emplace_back(normal.r.ldlt().solve(normal.s));
+    back.push_back(linear_algebra::solve_hermitian(normal.r, normal.s));
     reduced += normal.t - normal.s.adjoint() * back.back();
   }
   const Index rest = order * refs;
-  const MatrixXcd alpha = -reduced.bottomRightCorner(rest, rest).ldlt().solve(reduced.bottomLeftCorner(rest, refs));
+  const MatrixXcd alpha =
+      -linear_algebra::solve_hermitian(reduced.bottomRightCorner(rest, rest), reduced.bottomLeftCorner(rest, refs));
   MatrixXcd all(q * refs, refs);
   all << MatrixXcd::Identity(refs, refs), alpha;
   Fraction fraction;

@@ -1,11 +1,11 @@
 #include "robomill/modal/posture/calibration.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/modal/posture/calibration_search.hpp"
 #include "robomill/modal/posture/column_deviation.hpp"
@@ -216,7 +216,7 @@ PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration
     to(a) = posture_kernel(postures[static_cast<std::size_t>(a)], joints);
   }
   kernel.diagonal().array() += own_share;
-  const Eigen::VectorXd weights = kernel.llt().solve(to);
+  const Eigen::VectorXd weights = linear_algebra::solve_positive_definite(kernel, to);
   const double left = 1.0 - to.dot(weights);
   // φ = θ + Σ_k w_k u_k: of (θ, u), row by row.
   const auto picked = [&](const Eigen::MatrixXd& of) {

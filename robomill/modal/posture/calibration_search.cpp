@@ -1,10 +1,10 @@
 #include "robomill/modal/posture/calibration_search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 
 namespace robomill::modal::detail {
@@ -41,7 +41,7 @@ CalibrationSearch::CalibrationSearch(const FlexibleArm& arm, const CalibrationDa
     }
   }
   kernel.diagonal().array() += own_share;
-  inverse_kernel_ = kernel.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  inverse_kernel_ = linear_algebra::solve_positive_definite(kernel, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
   common_ = near;
   differing_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(deviating_.size()), n);
 }
@@ -122,7 +122,8 @@ CalibrationSearch::LeftOut CalibrationSearch::without(std::size_t posture) const
   double damping = 0.0;
   for (int attempt = 0; attempt < 6; ++attempt) {
     precision = assemble(true, damping, posture);
-    const Eigen::VectorXd step = precision.llt().solve(-gradient(true, posture));
+    const Eigen::VectorXd step =
+        linear_algebra::solve_positive_definite(precision, Eigen::VectorXd(-gradient(true, posture)));
     common = common_ + step.head(common_.size());
     differing = differing_;
     if (differing_.size() > 0) {
@@ -132,9 +133,10 @@ CalibrationSearch::LeftOut CalibrationSearch::without(std::size_t posture) const
     if (trial_cost(common, differing, posture) < before) break;
     damping = damping == 0.0 ? marquardt_ : 6.0 * damping;
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(damping > 0.0 ? assemble(true, 0.0, posture) : precision);
+  if (damping > 0.0) precision = assemble(true, 0.0, posture);
   const Eigen::MatrixXd pick = picked(posture);
-  return {.parameters = parameters_of(common, differing, posture), .covariance = pick * factor.solve(pick.transpose())};
+  const Eigen::MatrixXd spread = linear_algebra::solve_positive_definite(precision, Eigen::MatrixXd(pick.transpose()));
+  return {.parameters = parameters_of(common, differing, posture), .covariance = pick * spread};
 }
 
 PostureNormal CalibrationSearch::evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters,
@@ -153,7 +155,7 @@ Eigen::VectorXd CalibrationSearch::refined(std::size_t posture, const Eigen::Vec
     Eigen::MatrixXd matrix = at.matrix / noise_;
     matrix.diagonal() += prior_;
     const Eigen::VectorXd gradient = at.gradient / noise_ + prior_.cwiseProduct(now - predicted);
-    const Eigen::VectorXd step = matrix.llt().solve(-gradient);
+    const Eigen::VectorXd step = linear_algebra::solve_positive_definite(matrix, Eigen::VectorXd(-gradient));
     const double before = cost(at, now);
     double share = 1.0;
     Eigen::VectorXd next = now + step;
@@ -173,7 +175,8 @@ Eigen::VectorXd CalibrationSearch::refined(std::size_t posture, const Eigen::Vec
 
 Eigen::MatrixXd CalibrationSearch::covariance() const {
   const Eigen::MatrixXd precision = assemble(true, 0.0, SIZE_MAX);
-  return precision.llt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(precision.rows(), precision.cols());
+  return linear_algebra::solve_positive_definite(precision, one);
 }
 
 Eigen::VectorXd CalibrationSearch::parameters_of(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
@@ -284,7 +287,8 @@ Eigen::VectorXd CalibrationSearch::gradient(bool with_differing, std::size_t lef
 }
 
 Eigen::VectorXd CalibrationSearch::solve_step(bool with_differing, double damping, std::size_t left_out) const {
-  return assemble(with_differing, damping, left_out).llt().solve(-gradient(with_differing, left_out));
+  return linear_algebra::solve_positive_definite(assemble(with_differing, damping, left_out),
+                                                 Eigen::VectorXd(-gradient(with_differing, left_out)));
 }
 
 Eigen::MatrixXd CalibrationSearch::picked(std::size_t posture) const {

@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -86,7 +85,8 @@ Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParamet
 }
 
 Eigen::Matrix3cd FlexibleArm::receptance(const System& system, Complex s) {
-  const Eigen::MatrixXcd moved = dynamic_stiffness(system, s).partialPivLu().solve(system.input.cast<Complex>());
+  const Eigen::MatrixXcd moved =
+      linear_algebra::solve(dynamic_stiffness(system, s), Eigen::MatrixXcd(system.input.cast<Complex>()));
   return system.input.transpose() * moved + in_base(system);
 }
 

@@ -1,12 +1,13 @@
 #include "robomill/stability/frequency_domain/crossings.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::stability::detail {
 namespace {
@@ -29,8 +30,7 @@ class LargestEigenvalues {
       if (converged(columns, least, out)) return;
     }
     built_ = 0;
-    solver_.compute(a, false);
-    keep(solver_.eigenvalues(), least, out);
+    keep(linear_algebra::eigenvalues(a), least, out);
     built_ = 0;
   }
 
@@ -67,21 +67,21 @@ class LargestEigenvalues {
   }
   bool converged(Eigen::Index columns, double least, std::vector<Complex>& out) {
     const Eigen::MatrixXcd h = small_.topLeftCorner(columns, columns);
-    solver_.compute(h, true);
+    const linear_algebra::EigenPairs pairs = linear_algebra::eigen_pairs(h);
+    if (!pairs.converged) return false;
     const double rest = std::abs(small_(columns, columns - 1));
     const double allowed = 1e-9 * h.norm();
     for (Eigen::Index i = 0; i < columns; ++i) {
-      if (std::abs(solver_.eigenvalues()(i)) < least) continue;
-      if (rest * std::abs(solver_.eigenvectors()(columns - 1, i)) > allowed) return false;
+      if (std::abs(pairs.values(i)) < least) continue;
+      if (rest * std::abs(pairs.vectors(columns - 1, i)) > allowed) return false;
     }
-    keep(solver_.eigenvalues(), least, out);
+    keep(pairs.values, least, out);
     return true;
   }
 
   Eigen::Index built_ = 0;
   Eigen::MatrixXcd basis_, small_;
   Eigen::VectorXcd next_, share_;
-  Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver_;
 };
 
 struct Sample {

@@ -1,10 +1,11 @@
 #include "robomill/stability/frequency_domain/frf_interpolation.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <utility>
+
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::stability::detail {
 namespace {
@@ -76,7 +77,7 @@ FrfInterpolation::Piece FrfInterpolation::piece(Eigen::Index line) const {
   double least = miss.norm();
   for (Eigen::Index degree = 1; degree <= 2 && least > 1e-13 * size; ++degree) {
     const Eigen::MatrixXcd columns = misses.middleCols(1, degree);
-    const Eigen::VectorXcd found = columns.colPivHouseholderQr().solve(miss);
+    const Eigen::VectorXcd found = linear_algebra::least_squares_with_pivots(columns, miss);
     const double left = (columns * found - miss).norm();
     const std::array<Complex, 2> d = {found(0), degree == 2 ? found(1) : 0.0};
     if (!(left < least / 3.0) || !found.allFinite() || !plausible(d, spacing)) continue;
@@ -117,7 +118,7 @@ void FrfInterpolation::find_continuation() {
   }
   Eigen::MatrixXd values(2 * count, 4);
   values << top.real(), top.imag();
-  const Eigen::Matrix4d fitted = powers.colPivHouseholderQr().solve(values);
+  const Eigen::Matrix4d fitted = linear_algebra::least_squares_with_pivots(powers, values);
   if (fitted.allFinite() && (powers * fitted - values).norm() <= 0.5 * values.norm()) above_ = fitted;
 }
 
