@@ -131,6 +131,14 @@ std::string dump(const Json& json) {
   return out;
 }
 
+Json parsed(std::string_view text) {
+  return Json::parse(text);
+}
+
+Json parsed_or_discarded(std::string_view text) {
+  return Json::parse(text, nullptr, false);
+}
+
 JsonNode::JsonNode(const Json& json, std::string file, std::vector<std::string>& warnings)
     : JsonNode(json, std::move(file), std::string(), &warnings) {}
 
@@ -219,7 +227,7 @@ Json read_json(const std::filesystem::path& path) {
 Json parse_json(std::string_view content, const std::string& name) {
   require_shallow(content, name);
   try {
-    return Json::parse(content);
+    return parsed(content);
   } catch (const nlohmann::json::exception& error) {
     const auto* parse = dynamic_cast<const nlohmann::json::parse_error*>(&error);
     const std::size_t line = line_of(content, parse != nullptr ? parse->byte : 0);

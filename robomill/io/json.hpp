@@ -40,6 +40,12 @@ using Json = nlohmann::ordered_json;
 /// end last.
 [[nodiscard]] std::string dump(const Json& json);
 
+/// JSON that a program of ours wrote; the parser is compiled once, here. What others wrote: parse_json.
+/// @throws nlohmann::json::exception
+[[nodiscard]] Json parsed(std::string_view text);
+/// The same; what is no JSON comes back discarded (is_discarded).
+[[nodiscard]] Json parsed_or_discarded(std::string_view text);
+
 /// A place in a JSON file while it is read; errors name the file and the path, "tip.json: modes[2].damping_ratio",
 /// lists counted from 1. Of a document every number that is read is compared with what is usual of its key
 /// (io/usual_ranges.hpp), of a list the largest.

@@ -27,7 +27,7 @@ std::string app_html(const std::string& folder, const std::string& write_token) 
       "<link rel=\"stylesheet\" href=\"page.css\">\n</head>\n<body>\n{}"
       "<script type=\"application/json\" id=\"serve-config\">{}</script>\n"
       "<script src=\"page.js\" defer></script>\n</body></html>\n",
-      escape(folder), body, escape_json_for_script(config.dump()));
+      escape(folder), body, escape_json_for_script(io::plain_text(config)));
 }
 
 }  // namespace robomill::page

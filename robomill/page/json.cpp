@@ -19,7 +19,7 @@ Json number(double value) {
 
 Json text(const std::string& raw) {
   const Json quoted = raw;
-  return Json::parse(quoted.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return io::parsed(io::plain_text(quoted));
 }
 
 }  // namespace robomill::page

@@ -48,7 +48,8 @@ std::string report_html(const Report& report) {
     page += "<div id=\"page\"></div>\n<noscript>" +
             in_text(title, summary, "Tables and plots need JavaScript. This is the summary.") + "</noscript>\n";
   }
-  page += "<script type=\"application/json\" id=\"report-data\">" + escape_json_for_script(json.dump()) + "</script>\n";
+  page += "<script type=\"application/json\" id=\"report-data\">" + escape_json_for_script(io::plain_text(json)) +
+          "</script>\n";
   if (!json["blocks"].is_null()) append_script(page, page_path_script());
   append_script(page, script);
   return page + "</body></html>\n";

@@ -242,7 +242,7 @@ Json shown(Json value, bool whole, int depth = 0) {
 Json document(const char* member, const std::string& text) {
   if (text.empty()) return nullptr;
   try {
-    Json json = Json::parse(text);
+    Json json = io::parsed(text);
     thin_frfs(json);
     thin_forces(json);
     thin_recordings(json);
@@ -318,7 +318,7 @@ Json page_data(const Report& report) {
 }
 
 std::string report_json(const Report& report) {
-  return page_data(report).dump() + "\n";
+  return io::plain_text(page_data(report)) + "\n";
 }
 
 }  // namespace robomill::page

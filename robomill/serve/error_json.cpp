@@ -59,7 +59,7 @@ std::string client_text(std::string text, const std::filesystem::path& root) {
 }
 
 io::Json AnsweredElsewhere::error() const {
-  const io::Json body = io::Json::parse(response_.body, nullptr, false);
+  const io::Json body = io::parsed_or_discarded(response_.body);
   if (body.is_object() && body.contains("error") && body["error"].is_object()) return body["error"];
   return error_object(response_.body.substr(0, 200));
 }

@@ -16,7 +16,7 @@ std::string command_line(const Command& command, double decided_unix_s) {
   json["first"] = speed ? io::Json(command.feed_first ? "feed" : "spindle") : io::Json(nullptr);
   json["reason"] = command.reason;
   json["not_claimed"] = command.not_claimed;
-  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace) + '\n';
+  return io::plain_text(json) + '\n';
 }
 
 }  // namespace robomill::live

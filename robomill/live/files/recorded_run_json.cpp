@@ -144,7 +144,7 @@ Row<RecordedRun> event_key() {
   row.write = [](const RecordedRun& run, const Row<RecordedRun>&) {
     Json events = Json::array();
     for (const std::string& event : run.events) {
-      events.push_back(Json::parse(event, nullptr, false));
+      events.push_back(io::parsed_or_discarded(event));
       if (events.back().is_discarded()) throw InvalidInput("events", "must be lines of JSON");
     }
     return events;

@@ -112,7 +112,7 @@ std::vector<Row<MonitorEvent>> own_keys() {
 
 /// Of names of files whatever their bytes.
 std::string line_of(const io::Json& json) {
-  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace) + '\n';
+  return io::plain_text(json) + '\n';
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ void read_act(io::TomlFile& file, ActSettings& act) {
 
 std::string toml_value(const io::Json& value) {
   if (value.is_string()) return io::toml_quoted(value.get_ref<const std::string&>());
-  if (!value.is_array()) return value.is_number_float() ? fmt::format("{:.15g}", value.get<double>()) : value.dump();
+  if (!value.is_array())
+    return value.is_number_float() ? fmt::format("{:.15g}", value.get<double>()) : io::plain_text(value);
   std::string list;
   for (const io::Json& one : value) list += (list.empty() ? "" : ", ") + toml_value(one);
   return "[" + list + "]";

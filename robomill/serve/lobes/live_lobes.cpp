@@ -190,8 +190,8 @@ std::string LiveLobes::answer(const LiveLobesRequest& request, Progress& progres
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
   return fmt::format(
       R"({{"sequence": {}, "lobes": {}, "modes": {}, "fields": {}, "notes": {}, "milliseconds": {:.1f}}})",
-      request.order.sequence, document, modes_json(cut.problem).dump(), fields.dump(), io::dump(io::Json(notes)),
-      spent.count());
+      request.order.sequence, document, io::plain_text(modes_json(cut.problem)), io::plain_text(fields),
+      io::dump(io::Json(notes)), spent.count());
 }
 
 }  // namespace robomill::serve

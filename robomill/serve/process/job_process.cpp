@@ -18,7 +18,7 @@ std::string text_of(const JobRequest& request) {
 
 JobRun run_of(const std::string& text) {
   const std::size_t line_end = text.find('\n');
-  const io::Json found = io::Json::parse(std::string_view(text).substr(0, line_end));
+  const io::Json found = io::parsed(std::string_view(text).substr(0, line_end));
   JobRun out;
   out.outcome.shortfall = found.at("shortfall").get<std::string>();
   out.outcome.summary = found.at("summary").get<std::string>();
@@ -30,7 +30,7 @@ JobRun run_of(const std::string& text) {
 }  // namespace
 
 JobRequest request_of(const std::string& text) {
-  const io::Json json = io::Json::parse(text);
+  const io::Json json = io::parsed(text);
   return {.verb = json.at("verb").get<std::string>(),
           .inputs = json.at("inputs").get<std::vector<std::string>>(),
           .output = json.at("output").get<std::string>(),

@@ -78,7 +78,7 @@ HttpResponse MonitorService::list() {
   if (process_) {
     HttpResponse listed = forward({.method = "GET", .path = std::string(all_path), .query = {}, .headers = {}});
     if (listed.status != 200) return listed;
-    known_ = io::Json::parse(listed.body);
+    known_ = io::parsed(listed.body);
     for (const io::Json& spindle : known_) last_id_ = std::max(last_id_, id_of(spindle));
   }
   io::Json out = lost_;

@@ -23,7 +23,7 @@ constexpr milliseconds patience_at_end(500);
 /// {"task", "fraction"}; what is no such thing is not reported.
 void report_progress(const Progress::Report& report, const std::string& body) {
   if (!report) return;
-  const io::Json json = io::Json::parse(body, nullptr, false);
+  const io::Json json = io::parsed_or_discarded(body);
   if (!json.is_object() || !json.contains("task") || !json["task"].is_string()) return;
   const auto fraction = json.find("fraction");
   if (fraction == json.end() || !fraction->is_number()) return;

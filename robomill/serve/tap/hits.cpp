@@ -151,7 +151,7 @@ void TapHits::average() {
       last.hit.reset();
       continue;
     }
-    frf_ = result ? io::Json::parse(modal::frf_json(thinned(result->set))) : io::Json(nullptr);
+    frf_ = result ? io::parsed(modal::frf_json(thinned(result->set))) : io::Json(nullptr);
     peaks_ = result ? peaks_of(*result) : io::Json::array();
     return;
   }

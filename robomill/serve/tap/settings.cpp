@@ -41,7 +41,7 @@ std::string axis_of(std::string_view direction) {
 }
 
 std::string toml_text(const io::Json& value) {
-  return value.is_string() ? io::toml_quoted(value.get<std::string>()) : value.dump();
+  return value.is_string() ? io::toml_quoted(value.get<std::string>()) : io::plain_text(value);
 }
 
 /// Keys that say what a 1 of a record is.
