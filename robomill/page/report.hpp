@@ -22,7 +22,7 @@ struct Report {
   std::string fitted = {};           ///< the same lines and FRFs of the modes fitted to them; empty: none
   std::string measured = {};         ///< FRFs measured beside predicted ones; empty: none
   std::string assembly = {};         ///< plan.json's assembly; empty: none
-  std::string recordings = {};       ///< of test cuts, a JSON array; empty: none
+  std::string recordings = {};       ///< of test cuts, recorded for the page alone; empty: none
   std::string modes = {};            ///< modes.json; empty: none
   std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
   std::string lobes = {};            ///< lobes.json; empty: none

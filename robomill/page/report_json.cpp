@@ -209,8 +209,8 @@ void thin_path(Json& json) {
 
 /// The lines of each spectrum of a recorded cut.
 void thin_recordings(Json& json) {
-  if (!json.is_array()) return;
-  for (Json& recording : json) {
+  if (!json.is_object() || !json.contains("recordings")) return;
+  for (Json& recording : json["recordings"]) {
     if (recording.is_object() && recording.contains("amplitude")) thin_axis(recording, recording["amplitude"].size());
   }
 }

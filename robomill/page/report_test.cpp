@@ -211,8 +211,8 @@ TEST(ReportJson, ThinsALongSpectrum) {
   for (const char* list : {"frequency_hz", "amplitude"})
     short_one[list].erase(short_one[list].begin() + 100, short_one[list].end());
   Report report;
-  report.recordings = json{recording, short_one}.dump();
-  const json kept = json::parse(report_json(report))["recordings"];
+  report.recordings = json{{"recordings", {recording, short_one}}}.dump();
+  const json kept = json::parse(report_json(report))["recordings"]["recordings"];
   const json& amplitude = kept[0]["amplitude"];
   EXPECT_GT(amplitude.size(), 5000U);
   EXPECT_LE(amplitude.size(), 6002U);

@@ -247,7 +247,8 @@ std::string sample_vibration() {
     x.push_back(1e-4 + forced + line(chatter_hz, 21.0) + line(chatter_hz + teeth * rotation_hz, 3.0));
     y.push_back(1e-4 + 0.5 * forced + line(chatter_hz, 9.0));
   }
-  const Json json = {{"displacement_um", {{"x", bands(30.0, 1.0)}, {"y", bands(14.0, 1.0)}}},
+  const Json json = {{"document", "vibration/1"},
+                     {"displacement_um", {{"x", bands(30.0, 1.0)}, {"y", bands(14.0, 1.0)}}},
                      {"force_n", {{"x", bands(210.0, 0.8)}, {"y", bands(160.0, 0.8)}, {"z", bands(40.0, 0.8)}}},
                      {"run_s", 0.001},
                      {"spectrum", {{"from_s", 0.2}, {"frequency_hz", frequency}, {"x_um", x}, {"y_um", y}}}};

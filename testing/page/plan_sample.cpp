@@ -308,7 +308,7 @@ std::string sample_recordings(const std::string& text) {
                                            peak(108.33, 0.5, "rotation", "rotation")})},
                     {"verdict", "chatter"},
                     {"reason", said("Two peaks above the tooth-passing line stand between the harmonics")}}});
-  return recordings.dump();
+  return Json{{"document", "recordings/1"}, {"recordings", recordings}}.dump();
 }
 
 }  // namespace robomill::page

@@ -1,10 +1,8 @@
 // Curves over equal runs of time, of which the lowest and the highest value are known; null where there was none.
+import type { VibrationDocument } from '#schema/vibration';
 import type { Num } from './parts_of_documents';
 
-export interface Band {
-  low: Num[];
-  high: Num[];
-}
+export type Band = VibrationDocument['force_n'][string];
 
 export interface TimeCurve {
   time_s: number[];

@@ -1,9 +1,7 @@
-// What robomill writes into the page: documents, whose types come from their schemas, and what is recorded for the page alone.
+// What robomill writes into the page: documents, whose types come from their schemas.
 import type { Documents } from '#schema/documents';
-import type { MotionDocument, Recording, VibrationDocument } from './recorded';
 
 export type * from './parts_of_documents';
-export type * from './recorded';
 
 /** The parts of a report that are documents, and which. */
 export const members = {
@@ -15,9 +13,11 @@ export const members = {
   modes: 'modes',
   workpiece_modes: 'modes',
   lobes: 'lobes',
+  recordings: 'recordings',
   forces: 'forces',
   blocks: 'blocks',
   smooth: 'smooth',
+  motion: 'motion', // of the smoothed program
   cell: 'check',
   monitor: 'monitor',
   calibration: 'calibration',
@@ -27,6 +27,7 @@ export const members = {
   comparison: 'comparison',
   explanation: 'explain',
   simulation: 'simulation',
+  vibration: 'vibration', // of the simulated cut
   coefficients: 'coefficients',
   stiffness: 'stiffness',
 } as const;
@@ -87,6 +88,10 @@ export type PeakKind = ExplainedPeak['kind'];
 /** One way to read a peak. */
 export type Reading = ExplainedPeak['others'][number];
 export type SimulationDocument = Documents['simulation'];
+export type VibrationDocument = Documents['vibration'];
+/** The spectrum of a test cut. */
+export type Recording = Documents['recordings']['recordings'][number];
+export type Peak = Recording['peaks'][number];
 export type Calibration = Documents['calibration'];
 /** The recordings that set the threshold, or those that verify it. */
 export type CalibratedHalf = Calibration['setting'];
@@ -151,6 +156,13 @@ export type SmoothedBy = NonNullable<SmoothDocument['methods']>[number];
 export type SmoothedJoint = SmoothedBy['joints'][number];
 /** Where a trajectory came nearest to a limit, and how many samples violate it. */
 export type NearestToLimit = SmoothedJoint['velocity'];
+export type MotionDocument = Documents['motion'];
+/** One method's trajectory over time: bands over runs of run_s each. */
+export type Motion = MotionDocument['motions'][number];
+export type JointMotion = Motion['joints'][number];
+export type Corner = MotionDocument['corners'][number];
+/** One point after another in the work frame. */
+export type Places = MotionDocument['program'];
 
 /** As the page has them: it shows neither deviations nor what a reader left out, and of long programs some columns. */
 interface Shown extends Omit<Documents, 'frf' | 'forces' | 'blocks'> {
@@ -169,9 +181,6 @@ export interface StageFile {
 export type Report = { -readonly [Member in keyof typeof members]: Shown[(typeof members)[Member]] | null } & {
   title: string;
   created: string;
-  motion: MotionDocument | null; // of the smoothed program
-  recordings: Recording[] | null;
-  vibration: VibrationDocument | null; // of the simulated cut
   assumed: Assumption[];
   warnings: string[]; // that no document holds
   notes: string[];

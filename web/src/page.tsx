@@ -58,7 +58,7 @@ function entries(report: Report): Entry[] {
     { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection frfs={frfs} modes={modes} predicted={assembly !== null} /> },
     { id: 'modes', name: 'Modes', content: (modes.length > 0 || report.modes?.fit) && <ModesSection modes={modes} document={report.modes} /> },
     { id: 'pairs', name: 'Which modes matter', content: plan && lobes && pairs.length > 0 && <PairsSection all={lobes} plan={plan} /> },
-    { id: 'recordings', name: 'Recorded cuts', content: recordings && <RecordingsSection recordings={recordings} /> },
+    { id: 'recordings', name: 'Recorded cuts', content: recordings && <RecordingsSection recordings={recordings.recordings} /> },
     { id: 'hits', name: 'Hits', content: hits.length > 0 && <HitsSection hits={hits} /> },
     { id: 'notes', name: 'Notes', content: notes.length + files.length > 0 && <NotesSection notes={notes} files={files} /> },
   ];

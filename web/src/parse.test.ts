@@ -14,7 +14,7 @@ describe('a document', () => {
     expect(() => requireDocument(['comparison', 'sweep'], lobesSample)).toThrow('This page reads comparison/1 or sweep/1, but the data is lobes/1.');
   });
   it('of a report too', () => {
-    expect(() => requireReport({ title: 'a', lobes: lobesSample, motion: {} })).not.toThrow();
+    expect(() => requireReport({ title: 'a', lobes: lobesSample, files: [] })).not.toThrow();
     expect(() => requireReport({ title: 'a', lobes: null })).not.toThrow();
     expect(() => requireReport({ title: 'a', lobes: {} })).toThrow('This page reads lobes/1');
     for (const data of [null, {}, 'x']) expect(() => requireReport(data)).toThrow('The data is no report.');

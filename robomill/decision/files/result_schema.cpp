@@ -38,7 +38,40 @@ const Schema<stability::ForcedVibration>& vibration_table() {
   return table;
 }
 
+const Schema<Peak>& peak_table() {
+  static const Schema<Peak> table(
+      "peak", "a peak of the spectrum",
+      {key("frequency_hz", &Peak::frequency_hz, "of the peak"), key("amplitude", &Peak::amplitude, "of the peak"),
+       key("kind", &Peak::kind, stability::explanation_names, "what it is"), key("text", &Peak::text, "in words")},
+      Use::written);
+  return table;
+}
+
 }  // namespace
+
+const Schema<Recording>& recording_table() {
+  static const Schema<Recording> table(
+      "recording", "the spectrum of a recorded cut",
+      {key("file", &Recording::file, "that was recorded"),
+       key("spindle_speed_rpm", &Recording::spindle_speed_rad_per_s, "of the cut"),
+       key("teeth", &Recording::teeth, "of the cutter"),
+       key(
+           "rotation_hz", [](const Recording& r) { return r.spindle_speed_rad_per_s / units::revolution; },
+           "of the spindle"),
+       key(
+           "tooth_passing_hz",
+           [](const Recording& r) { return r.spindle_speed_rad_per_s / units::revolution * r.teeth; }, "of the cutter"),
+       key("axial_depth_mm", &Recording::axial_depth_m, "of the cut"),
+       key(
+           "amplitude_unit", [](const Recording&) { return "m/s²"; }, "of all amplitudes"),
+       key("frequency_hz", &Recording::frequency_hz, "of the lines, thinned").exact(),
+       key("amplitude", &Recording::amplitude, "at each line").exact(),
+       key("peaks", &Recording::peaks, peak_table(), "with what they are"),
+       key("verdict", &Recording::verdict, verdict_names, "of the spectrum; none: it does not say").nullable(),
+       key("reason", &Recording::reason, "of the verdict")},
+      Use::written);
+  return table;
+}
 
 const Schema<ComparedCut>& cut_table() {
   static const Schema<ComparedCut> table(

@@ -7,12 +7,13 @@
 #include "robomill/decision/test_cuts.hpp"
 #include "robomill/io/schema.hpp"
 
-// What plan.json has of a decision.
+// What plan.json has of a decision, and the page of recorded cuts.
 
 namespace robomill::decision {
 
 [[nodiscard]] const io::Schema<Operation>& operation_table();
 [[nodiscard]] const io::Schema<ComparedCut>& cut_table();
+[[nodiscard]] const io::Schema<Recording>& recording_table();
 [[nodiscard]] const io::Schema<Agreement>& agreement_table();
 [[nodiscard]] const io::Schema<DepthCurve>& curve_table();
 [[nodiscard]] const io::Schema<PartLimits>& pair_table();

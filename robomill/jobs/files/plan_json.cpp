@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,15 +22,10 @@ namespace {
 
 using io::Json;
 using io::key;
-using io::number;
 using io::Row;
 using io::Schema;
 using io::Use;
 using process::Fact;
-
-Json text_or_null(std::string_view text) {
-  return text.empty() ? Json() : Json(text);
-}
 
 std::vector<Fact> facts_of(const PlanResult& result) {
   const cutting::Milling& cut = result.cut.problem.milling;
@@ -164,35 +156,29 @@ std::vector<Row<PlanResult>> stage_keys() {
                     "of the program"))};
 }
 
+/// A long recording's spectrum is thinned before it is text, by the page's own rule.
+decision::Recording thinned(decision::Recording recording) {
+  const std::vector<Eigen::Index> keep = page::thin(recording.amplitude);
+  recording.frequency_hz = recording.frequency_hz(keep).eval();
+  recording.amplitude = recording.amplitude(keep).eval();
+  return recording;
+}
+
 }  // namespace
 
-Json recordings_json(const PlanResult& result) {
-  Json list = Json::array();
-  for (const decision::Recording& recording : result.recordings) {
-    Json peaks = Json::array();
-    for (const decision::Peak& peak : recording.peaks) {
-      peaks.push_back({{"frequency_hz", number(peak.frequency_hz)},
-                       {"amplitude", number(peak.amplitude)},
-                       {"kind", to_string(peak.kind)},
-                       {"text", peak.text}});
-    }
-    // A long recording's spectrum is thinned before it is text, by the page's own rule.
-    const std::vector<Eigen::Index> keep = page::thin(recording.amplitude);
-    const double rotation_hz = recording.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
-    list.push_back({{"file", recording.file},
-                    {"spindle_speed_rpm", number(recording.spindle_speed_rad_per_s / units::rpm)},
-                    {"teeth", recording.teeth},
-                    {"rotation_hz", number(rotation_hz)},
-                    {"tooth_passing_hz", number(rotation_hz * recording.teeth)},
-                    {"axial_depth_mm", number(recording.axial_depth_m / units::mm)},
-                    {"amplitude_unit", "m/s²"},
-                    {"frequency_hz", io::numbers(recording.frequency_hz(keep))},
-                    {"amplitude", io::numbers(recording.amplitude(keep))},
-                    {"peaks", std::move(peaks)},
-                    {"verdict", text_or_null(to_string(recording.verdict))},
-                    {"reason", recording.reason}});
-  }
-  return list;
+const Schema<PlanResult>& recordings_table() {
+  static const Schema<PlanResult> table("recordings", "what is recorded of test cuts for the page alone: their spectra",
+                                        {key(
+                                            "recordings",
+                                            [](const PlanResult& result) {
+                                              std::vector<decision::Recording> out;
+                                              for (const decision::Recording& recording : result.recordings)
+                                                out.push_back(thinned(recording));
+                                              return out;
+                                            },
+                                            decision::recording_table(), "one a recorded cut")},
+                                        Use::written, 1);
+  return table;
 }
 
 namespace {

@@ -11,7 +11,7 @@ namespace robomill::jobs {
 /// What the job itself came to: plan.json without the documents of its stages.
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
 /// Spectra of the recorded test cuts.
-[[nodiscard]] io::Json recordings_json(const PlanResult& result);
+[[nodiscard]] const io::Schema<PlanResult>& recordings_table();
 /// The member `assembly`.
 [[nodiscard]] const io::Schema<TipPrediction>& assembly_table();
 

@@ -28,6 +28,7 @@
 #include "robomill/modal/files/hits_schema.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
+#include "robomill/path/files/motion_json.hpp"
 #include "robomill/path/files/smooth_object.hpp"
 #include "robomill/path/files/smoothing_schema.hpp"
 #include "robomill/process/files/blocks_json.hpp"
@@ -37,6 +38,7 @@
 #include "robomill/robot/files/geometry_toml.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/simulation/files/simulation_files.hpp"
+#include "robomill/simulation/files/vibration_json.hpp"
 #include "robomill/stability/files/chart_schema.hpp"
 #include "robomill/stability/files/lobes_schema.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
@@ -187,14 +189,28 @@ const std::vector<Entry>& documents() {
   static const std::vector<Entry> all = [] {
     std::vector<Entry> out;
     for (const TableInfo& table : toml_documents()) out.push_back({table.name, table});
-    for (const TableInfo* table :
-         {&plan_table(), &assembly_table().info(), &monitor::calibration_table().info(),
-          &coupling::joint_table().info(), &robot::stiffness_table().info(), &modal::frf_table().info(),
-          &process::blocks_table().info(), &process::forces_table().info(), &cell::modes_document_table().info(),
-          &lobes_json_table().info(), &stability::sweep_table().info(), &stability::comparison_table().info(),
-          &stability::explain_table().info(), &path::smooth_table().info(), &simulation::simulation_table().info(),
-          &cell::check_table().info(), &decision::tools_table().info(), &cutting::coefficients_document(),
-          &live::recorded_run_table().info()})
+    for (const TableInfo* table : {&plan_table(),
+                                   &recordings_table().info(),
+                                   &assembly_table().info(),
+                                   &monitor::calibration_table().info(),
+                                   &coupling::joint_table().info(),
+                                   &robot::stiffness_table().info(),
+                                   &modal::frf_table().info(),
+                                   &process::blocks_table().info(),
+                                   &process::forces_table().info(),
+                                   &cell::modes_document_table().info(),
+                                   &lobes_json_table().info(),
+                                   &stability::sweep_table().info(),
+                                   &stability::comparison_table().info(),
+                                   &stability::explain_table().info(),
+                                   &path::smooth_table().info(),
+                                   &path::motion_table().info(),
+                                   &simulation::simulation_table().info(),
+                                   &simulation::vibration_table().info(),
+                                   &cell::check_table().info(),
+                                   &decision::tools_table().info(),
+                                   &cutting::coefficients_document(),
+                                   &live::recorded_run_table().info()})
       out.push_back({table->name + ".json", *table});
     return out;
   }();

@@ -26,7 +26,7 @@ page::Report report_of(const PlanResult& result, const std::vector<page::StageFi
   const modal::ModalModel& workpiece = result.cut.problem.workpiece_dynamics;
   if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
   if (result.has_lobes()) report.lobes = io::dump(plan.at("lobes"));
-  if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
+  if (!result.recordings.empty()) report.recordings = io::dump(recordings_table().write(result));
   const PlannedProgram& shown = result.shown();
   if (shown.forces) report.forces = io::dump(plan.at("forces"));
   if (shown.blocks) report.blocks = process::blocks_json(*shown.forces, *shown.blocks);

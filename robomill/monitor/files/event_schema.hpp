@@ -1,4 +1,5 @@
 #pragma once
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ namespace robomill::monitor {
 template <class List>
 [[nodiscard]] std::vector<std::string> words_of(const List& values) {
   std::vector<std::string> out;
+  out.reserve(std::size(values));
   for (const auto value : values) out.emplace_back(to_string(value));
   return out;
 }

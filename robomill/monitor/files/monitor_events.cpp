@@ -99,6 +99,11 @@ std::vector<Row<MonitorEvent>> advice_keys() {
       key("compute_us", &Event::compute_s, "of the decision").nullable()};
 }
 
+std::vector<Row<MonitorEvent>> first_keys() {
+  return {key("time_s", &MonitorEvent::time_s, "of the stream").nullable(),
+          key("event", &MonitorEvent::kind, event_kind_names, "what changed")};
+}
+
 /// What events of one kind alone have.
 std::vector<Row<MonitorEvent>> own_keys() {
   using Event = MonitorEvent;
@@ -143,8 +148,7 @@ const io::Schema<MonitorEvent>& event_table() {
   static const io::Schema<Event> table(
       "monitor_event", "what the monitor reports",
       [] {
-        std::vector<Row<Event>> rows = {key("time_s", &Event::time_s, "of the stream").nullable(),
-                                        key("event", &Event::kind, event_kind_names, "what changed")};
+        std::vector<Row<Event>> rows = first_keys();
         add_rows(rows, state_keys<Event>(
                            [](const Event& event) { return std::pair(event.decision.state, event.decision.reason); }));
         add_rows(rows, {of_decision("score", &Decision::score, "of the detector"),
@@ -165,18 +169,35 @@ std::string event_line(const MonitorEvent& event) {
 }
 
 std::string started_line(const SessionStart& start) {
-  io::Json json = {{"time_s", 0.0},        {"event", "started"},     {"started", start.started},
-                   {"input", start.input}, {"config", start.config}, {"version", start.version}};
-  if (!start.message.empty()) json["message"] = start.message;
-  return line_of(json);
+  using Start = SessionStart;
+  static const io::Schema<Start> table(
+      "started", "that a session began to append",
+      {key(
+           "time_s", [](const Start&) { return 0.0; }, "of the stream"),
+       key(
+           "event", [](const Start&) { return "started"; }, "what this line is")
+           .words({"started"}),
+       key("started", &Start::started, "in UTC"), key("input", &Start::input, "a file or an address"),
+       key("config", &Start::config, "monitor.toml"), key("version", &Start::version, "of robomill"),
+       where([](const Start& s) { return !s.message.empty(); }, key("message", &Start::message, "for people"))},
+      io::Use::written);
+  return line_of(table.write(start));
 }
 
 std::string lost_events_line(std::uint64_t count) {
-  return line_of({{"time_s", nullptr},
-                  {"event", "stream"},
-                  {"what", "events-lost"},
-                  {"count", count},
-                  {"message", "events that could not be written here were too many to keep"}});
+  static const io::Schema<MonitorEvent> table(
+      "events_lost", "that events could not be kept",
+      [] {
+        std::vector<Row<MonitorEvent>> rows = first_keys();
+        add_rows(rows, own_keys());
+        return rows;
+      }(),
+      io::Use::written);
+  return line_of(table.write({.kind = MonitorEvent::Kind::stream,
+                              .time_s = std::numeric_limits<double>::quiet_NaN(),
+                              .what = "events-lost",
+                              .count = count,
+                              .message = "events that could not be written here were too many to keep"}));
 }
 
 }  // namespace robomill::monitor

@@ -13,8 +13,4 @@ const io::Schema<BandView>& band_table() {
   return table;
 }
 
-io::Json band_json(const Band& band, double unit) {
-  return band_table().write({&band, unit});
-}
-
 }  // namespace robomill::signal

@@ -25,7 +25,4 @@ template <class T>
       band_table(), meaning);
 }
 
-/// {"low": […], "high": […]} in a shop unit.
-[[nodiscard]] io::Json band_json(const Band& band, double unit = 1.0);
-
 }  // namespace robomill::signal

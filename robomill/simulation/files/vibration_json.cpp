@@ -1,64 +1,106 @@
 #include "robomill/simulation/files/vibration_json.hpp"
 
-#include <array>
 #include <cstddef>
 
 #include "robomill/base/units.hpp"
-#include "robomill/signal/bands.hpp"
 #include "robomill/signal/files/bands_json.hpp"
 #include "robomill/signal/spectrum.hpp"
 
 namespace robomill::simulation {
 namespace {
 
+using io::key;
+using io::Row;
+using io::Schema;
+using io::Use;
+using signal::BandView;
+
 constexpr std::size_t most_runs = 2000;
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-/// Columns over runs of time, those alone in which something happens.
-io::Json columns_json(const Simulation::Columns& columns, double unit, double sample_rate_hz, double& run_s) {
+Vibration::Curves curves_of(const Simulation::Columns& columns, double sample_rate_hz, double& run_s) {
   signal::Bands bands(axis_names.size(), most_runs);
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     const std::array<double, 3> row = {columns(i, 0), columns(i, 1), columns(i, 2)};
     bands.add(row);
   }
-  io::Json json = io::Json::object();
+  Vibration::Curves out;
   for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
     const Eigen::VectorXd column = columns.col(static_cast<Eigen::Index>(axis));
     if (column.size() == 0 || !(column.cwiseAbs().maxCoeff() > 0.0)) continue;
-    json[axis_names.at(axis)] = signal::band_json(bands.band(axis), unit);
+    out.emplace_back(axis_names.at(axis), bands.band(axis));
   }
   run_s = static_cast<double>(bands.length()) / sample_rate_hz;
-  return json;
+  return out;
 }
 
-/// About the mean, which is the static deflection. Null of a record that is too short for a spectrum.
-io::Json spectrum_json(const Simulation& result) {
+std::optional<VibrationSpectrum> spectrum_of(const Simulation& result) {
   constexpr Eigen::Index least = 16;
   const Eigen::Index n = result.displacement_m.rows() / 2;
-  if (n < least) return nullptr;
-  io::Json json = {
-      {"from_s", io::number(static_cast<double>(result.displacement_m.rows() - n) / result.sample_rate_hz)}};
+  if (n < least) return std::nullopt;
+  VibrationSpectrum out{.from_s = static_cast<double>(result.displacement_m.rows() - n) / result.sample_rate_hz};
   for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
     Eigen::VectorXd last = result.displacement_m.col(static_cast<Eigen::Index>(axis)).tail(n);
     last.array() -= last.mean();
     if (!(last.cwiseAbs().maxCoeff() > 0.0)) continue;
     const signal::Spectrum spectrum = signal::amplitude_spectrum(last, result.sample_rate_hz);
-    json["frequency_hz"] = io::numbers(spectrum.frequency_hz);
-    json[std::string(axis_names.at(axis)) + "_um"] = io::numbers(spectrum.amplitude / units::um);
+    out.frequency_hz = spectrum.frequency_hz;
+    out.amplitude_m.at(axis) = spectrum.amplitude;
   }
-  return json.contains("frequency_hz") ? json : io::Json();
+  return out.frequency_hz.size() > 0 ? std::optional(out) : std::nullopt;
+}
+
+Row<Vibration> curves_key(const std::string& name, Vibration::Curves Vibration::*curves, const std::string& meaning) {
+  const double unit = io::key_unit(name).factor;
+  return key(
+      name,
+      [curves, unit](const Vibration& vibration) {
+        std::vector<std::pair<std::string, BandView>> out;
+        for (const auto& [axis, band] : vibration.*curves) out.push_back({axis, {&band, unit}});
+        return out;
+      },
+      signal::band_table(), meaning);
+}
+
+const Schema<VibrationSpectrum>& spectrum_table() {
+  static const Schema<VibrationSpectrum> table(
+      "vibration_spectrum", "amplitudes of the displacement about its mean in the second half of the time",
+      [] {
+        std::vector<Row<VibrationSpectrum>> rows = {
+            key("from_s", &VibrationSpectrum::from_s, "begin of the record"),
+            key("frequency_hz", &VibrationSpectrum::frequency_hz, "of the lines").exact()};
+        for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+          rows.push_back(key(
+                             std::string(axis_names.at(axis)) + "_um",
+                             [axis](const VibrationSpectrum& spectrum) { return spectrum.amplitude_m.at(axis); },
+                             "at each line")
+                             .exact()
+                             .optional());
+        }
+        return rows;
+      }(),
+      Use::written);
+  return table;
 }
 
 }  // namespace
 
+const Schema<Vibration>& vibration_table() {
+  static const Schema<Vibration> table(
+      "vibration", "what is recorded of a simulation for the page alone: by axis, where something happens",
+      {curves_key("displacement_um", &Vibration::displacement_m, "of the tool against the workpiece"),
+       curves_key("force_n", &Vibration::force_n, "on the tool"),
+       key("run_s", &Vibration::run_s, "of one run of every band"),
+       key("spectrum", &Vibration::spectrum, spectrum_table(), "none: too short, or nothing moves").nullable()},
+      Use::written, 1);
+  return table;
+}
+
 std::string vibration_json(const Simulation& result) {
-  double run_s = 0.0;
-  io::Json json;
-  json["displacement_um"] = columns_json(result.displacement_m, units::um, result.sample_rate_hz, run_s);
-  json["force_n"] = columns_json(result.force_n, 1.0, result.sample_rate_hz, run_s);
-  json["run_s"] = io::number(run_s);
-  json["spectrum"] = spectrum_json(result);
-  return io::dump(json);
+  Vibration out{.spectrum = spectrum_of(result)};
+  out.displacement_m = curves_of(result.displacement_m, result.sample_rate_hz, out.run_s);
+  out.force_n = curves_of(result.force_n, result.sample_rate_hz, out.run_s);
+  return io::dump(vibration_table().write(out));
 }
 
 }  // namespace robomill::simulation

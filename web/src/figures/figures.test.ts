@@ -141,14 +141,14 @@ describe('polar plot', () => {
 });
 
 const recording: Recording = {
-  ...sampleReport().recordings![0]!,
+  ...sampleReport().recordings!.recordings[0]!,
   file: 'cut.csv',
   rotation_hz: 100,
   tooth_passing_hz: 300,
   teeth: 3,
   amplitude_unit: 'm/s²',
   frequency_hz: [0, 500, 1000],
-  amplitude: [0, 2, null],
+  amplitude: [0, 2, 1],
   peaks: [
     { frequency_hz: 325, amplitude: 1, kind: 'tooth passing', text: 'tooth' },
     { frequency_hz: 417, amplitude: 2, kind: 'chatter', text: 'mode 1' },

@@ -16,7 +16,7 @@ const joint: JointMotion = {
   tracking_error: band(0, 0.01, 0.02),
 };
 
-const corner: Corner = { line: 14, turn_deg: 90, radius_mm: 0.5, program: { x_mm: [-100, 0, 100], y_mm: [100, 0, 100] } };
+const corner: Corner = { block: 4, line: 14, turn_deg: 90, radius_mm: 0.5, program: { x_mm: [-100, 0, 100], y_mm: [100, 0, 100] } };
 
 const motion = (joints: JointMotion[] = [joint]): Motion => ({
   run_s: 1,
@@ -27,7 +27,7 @@ const motion = (joints: JointMotion[] = [joint]): Motion => ({
   corner_paths: [{ x_mm: [-0.4, 0, 0.4], y_mm: [0.4, 0.1, 0.4] }],
 });
 
-const moved: MotionDocument = { program: { x_mm: [0, 10], y_mm: [0, 4], z_mm: [0, 2] }, corners: [corner], motions: [motion(), motion()] };
+const moved: MotionDocument = { document: 'motion/1', program: { x_mm: [0, 10], y_mm: [0, 4], z_mm: [0, 2] }, corners: [corner], motions: [motion(), motion()] };
 const alone: MotionDocument = { ...moved, motions: [motion()] };
 
 const sample = sampleReport().smooth!;

@@ -77,6 +77,7 @@ describe('peaks', () => {
 describe('simulation', () => {
   const band = (size: number) => ({ low: [-size, -size], high: [size, size] });
   const vibration: VibrationDocument = {
+    document: 'vibration/1',
     run_s: 0.5,
     displacement_um: { x: band(2) },
     force_n: { x: band(20), z: band(3) },

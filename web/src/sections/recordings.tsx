@@ -45,8 +45,7 @@ export function RecordingsSection({ recordings }: { recordings: Recording[] }) {
             {recording.file} <VerdictBadge verdict={recording.verdict} />
           </h3>
           <p>
-            {fixed(recording.spindle_speed_rpm, 0)} rpm, {recording.teeth} teeth
-            {recording.axial_depth_mm !== null && `, ${significant(recording.axial_depth_mm)} mm deep`}
+            {fixed(recording.spindle_speed_rpm, 0)} rpm, {recording.teeth} teeth, {significant(recording.axial_depth_mm)} mm deep
             {recording.reason && `. ${recording.reason}`}
           </p>
           {recording.frequency_hz.length > 0 && <Spectrum recording={recording} index={index} />}
