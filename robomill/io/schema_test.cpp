@@ -241,7 +241,8 @@ TEST(Schema, ReadsAPlaceAndByCodeWhatHoldsMoreThanOneKind) {
 TEST(Schema, IsATableOfTheDocuments) {
   EXPECT_NE(markdown_table(tool_table().info()).find("| `diameter_mm` | mm, > 0 | required | over the edges |\n"),
             std::string::npos);
-  EXPECT_NE(markdown_table(tool_table().info()).find("| `modes[].damping_ratio` | between 0 and 1 | 0.02 | share of critical |\n"),
+  EXPECT_NE(markdown_table(tool_table().info())
+                .find("| `modes[].damping_ratio` | between 0 and 1 | 0.02 | share of critical |\n"),
             std::string::npos)
       << markdown_table(tool_table().info());
 }
