@@ -12,23 +12,6 @@ namespace {
 
 constexpr int most_stations = 8;
 
-/// The least turn that takes one direction to another; of opposite ones a half turn about any axis across. Eigen's
-/// FromTwoVectors has a singular value decomposition compiled for these.
-Eigen::Quaterniond least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
-  const double cosine = b.dot(a);
-  Eigen::Quaterniond out;
-  if (cosine < -1.0 + 1e-12) {
-    out.w() = 0.0;
-    out.vec() = a.unitOrthogonal();
-    return out;
-  }
-  const double root = std::sqrt((1.0 + cosine) * 2.0);
-  out.vec() = a.cross(b) * (1.0 / root);
-  out.w() = root * 0.5;
-  return out;
-}
-
 /// By how much the depth at a place may differ from 0 and count as being on the surface: a share of a dexel, and what
 /// straight lines between rays miss of an arc.
 double depth_tolerance_m(const stability::SurfacePlace& place, const cutting::Profile& cutter, double dexel_m) {
@@ -86,7 +69,7 @@ BlockStations::BlockStations(const program::Program& program, std::size_t block,
   stations_.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     const program::Pose pose = program::between(begin, end, (k + 0.5) / count);
-    const Eigen::Quaterniond turn = least_turn(work_from_tool.col(2), pose.axis);
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(work_from_tool.col(2), pose.axis);
     stations_.push_back({.tip_m = pose.tip_m + bend_m, .work_from_tool = turn.toRotationMatrix() * work_from_tool});
   }
 }
