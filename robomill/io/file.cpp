@@ -86,7 +86,7 @@ bool is_temporary_name(const fs::path& path) {
 }
 
 Format format_of(const fs::path& path) {
-  static constexpr std::array<std::pair<std::string_view, Format>, 11> endings = {{{".uff", Format::uff},
+  static constexpr std::array<std::pair<std::string_view, Format>, 13> endings = {{{".uff", Format::uff},
                                                                                    {".unv", Format::uff},
                                                                                    {".uf", Format::uff},
                                                                                    {".csv", Format::csv},
@@ -96,7 +96,9 @@ Format format_of(const fs::path& path) {
                                                                                    {".mat", Format::mat},
                                                                                    {".json", Format::json},
                                                                                    {".toml", Format::toml},
-                                                                                   {".wav", Format::wav}}};
+                                                                                   {".wav", Format::wav},
+                                                                                   {".lvm", Format::lvm},
+                                                                                   {".tdms", Format::tdms}}};
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });

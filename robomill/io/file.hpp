@@ -14,9 +14,9 @@
 namespace robomill::io {
 
 /// What a file's ending says about its content.
-enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
+enum class Format { uff, csv, text, mat, json, toml, wav, lvm, tdms, unknown };
 
-/// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav; case does not matter.
+/// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav, .lvm, .tdms; case does not matter.
 [[nodiscard]] Format format_of(const std::filesystem::path& path);
 
 /// A path and, where it is a link, what it leads to, which may be missing, and so on.

@@ -18,6 +18,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records/labview/lvm.hpp"
 #include "robomill/io/records/records.hpp"
 #include "robomill/io/records/sample_alignment.hpp"
 #include "robomill/io/records/sample_parts.hpp"
@@ -101,8 +102,9 @@ class RecordSource : public SampleSource {
     Record record = read_record(path, {.time = {}, .scale = columns.scale});
     sample_rate_hz_ = record.sample_rate_hz;
     notes_ = record.notes;
-    check_rate(sample_rate_hz_, columns.sample_rate_hz, 1e-3, path.string());
-    const std::vector<std::size_t> pick = pick_columns(columns, record.names, record.columns.size(), path.string());
+    check_rate(sample_rate_hz_, columns.sample_rate_hz, std::max(1e-3, record.rate_error), path.string());
+    const std::vector<std::size_t> pick =
+        pick_columns(columns, record.names, record.columns.size(), path.string(), record.left_out);
     for (const std::size_t column : pick) columns_.push_back(std::move(record.columns[column]));
     for (const Eigen::VectorXd& column : columns_) {
       if (column.size() != columns_.front().size()) {
@@ -219,7 +221,8 @@ bool ByteReader::line_here() const {
 }
 
 std::vector<std::size_t> pick_columns(const SampleColumns& wanted, const std::vector<std::string>& names,
-                                      std::size_t count, const std::string& where) {
+                                      std::size_t count, const std::string& where,
+                                      const std::vector<std::string>& left_out) {
   const std::vector<std::string>& asked = wanted.channels;
   const bool nameless = std::all_of(names.begin(), names.end(), [](const std::string& name) { return name.empty(); });
   std::vector<std::size_t> pick;
@@ -241,8 +244,9 @@ std::vector<std::size_t> pick_columns(const SampleColumns& wanted, const std::ve
       }
       throw InvalidInput(
           where, "has no column " + name,
-          fmt::format("It has {} column{}{}{}. Write signal.channels with their names, or numbers from 1", count,
-                      count == 1 ? "" : "s", known.empty() ? " without names" : ": ", known));
+          fmt::format("It has {} column{}{}{}{}{}. Write signal.channels with their names, or numbers from 1", count,
+                      count == 1 ? "" : "s", known.empty() ? " without names" : ": ", known,
+                      left_out.empty() ? "" : ". Left out: ", fmt::join(left_out, ", ")));
     }
   }
   for (std::size_t i = 0; i < pick.size(); ++i) {
@@ -283,15 +287,19 @@ std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path, co
         return wav_source(path, columns);
       case Format::mat:
       case Format::uff:
+      case Format::tdms:
         return record_source(path, columns);
       case Format::csv:
       case Format::text:
+      case Format::lvm:  // without headers it is a table
+        if (is_lvm(path)) return record_source(path, columns);
         format = RawFormat::csv;
         break;
       default:
         (void)open_file(path);
-        throw InvalidInput(path.string(), "is no recording by its ending",
-                           "Recordings are .wav, .csv, .txt, .mat and .uff; others need --format f32, i16 or csv");
+        throw InvalidInput(
+            path.string(), "is no recording by its ending",
+            "Recordings are .wav, .csv, .txt, .mat, .uff, .lvm and .tdms; others need --format f32, i16 or csv");
     }
   }
   std::error_code ignored;

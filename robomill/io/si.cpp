@@ -22,7 +22,7 @@ struct Unit {
   double factor;
 };
 
-constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
+constexpr std::array<Unit, 42> units = {{{"m", Quantity::displacement, 1.0},
                                          {"mm", Quantity::displacement, 1e-3},
                                          {"um", Quantity::displacement, 1e-6},
                                          {"in", Quantity::displacement, units::inch},
@@ -49,6 +49,9 @@ constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
                                          {"rad/s/s", Quantity::acceleration, 1.0},
                                          {"n", Quantity::force, 1.0},
                                          {"newton", Quantity::force, 1.0},
+                                         {"newtons", Quantity::force, 1.0},
+                                         {"kgf", Quantity::force, units::standard_gravity},
+                                         {"pounds", Quantity::force, units::pound_force},
                                          {"kn", Quantity::force, 1e3},
                                          {"lbf", Quantity::force, units::pound_force},
                                          {"lb", Quantity::force, units::pound_force},
@@ -57,6 +60,9 @@ constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
                                          {"nmm", Quantity::force, 1e-3},
                                          {"meter", Quantity::displacement, 1.0},
                                          {"metre", Quantity::displacement, 1.0},
+                                         {"meters", Quantity::displacement, 1.0},
+                                         {"metres", Quantity::displacement, 1.0},
+                                         {"inches", Quantity::displacement, units::inch},
                                          {"g's", Quantity::acceleration, units::standard_gravity}}};
 
 /// Lower case, without blanks, brackets and signs of multiplication or power; ² is 2 and µ is u, in UTF-8 and Latin-1.

@@ -13,6 +13,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records/labview/lvm.hpp"
+#include "robomill/io/records/labview/tdms.hpp"
 #include "robomill/io/records/mat.hpp"
 #include "robomill/io/records/sound_file.hpp"
 #include "robomill/io/records/uff.hpp"
@@ -33,9 +35,7 @@ Eigen::VectorXd vector(const std::vector<double>& values) {
 struct UnreadEnding {
   std::string_view ending, what;
 };
-constexpr UnreadEnding unread_endings[] = {{".lvm", "a LabVIEW measurement file"},
-                                           {".tdms", "a LabVIEW TDMS file"},
-                                           {".tdm", "a LabVIEW TDM file"},
+constexpr UnreadEnding unread_endings[] = {{".tdm", "a LabVIEW TDM file"},
                                            {".npy", "a NumPy file"},
                                            {".npz", "a NumPy file"},
                                            {".h5", "an HDF5 file"},
@@ -135,14 +135,13 @@ void take_units(Record& record) {
     if (unit == "-") unit.clear();
     const std::string of_name = unit_of_column(record.names[i]);
     if (!may_be_one(unit, of_name)) {
-      throw InvalidInput(
-          record.file.string(),
-          fmt::format("column {} is in {} by its name and in {} by the row of units", record.names[i], of_name, unit));
+      throw InvalidInput(record.file.string(), fmt::format("column {} is in {} by its name and in {} by {}",
+                                                           record.names[i], of_name, unit, record.units_by));
     }
     const double s = seconds_in(unit);
     if (s == 0.0 || s == 1.0) continue;
-    record.notes.push_back(fmt::format("{}: column {} is in {} by the row of units: converted to s",
-                                       record.file.string(), record.names[i], unit));
+    record.notes.push_back(fmt::format("{}: column {} is in {} by {}: converted to s", record.file.string(),
+                                       record.names[i], unit, record.units_by));
     record.columns[i] *= s;
     record.units[i] = "s";
   }
@@ -150,7 +149,6 @@ void take_units(Record& record) {
 
 Record read_text_record(const Path& path) {
   const std::string content = read_file(path);
-  if (content.starts_with("LabVIEW Measurement")) throw unread_error(path, unread_record("record.lvm"));
   Record record{.file = path, .names = {}, .columns = {}};
   const Table table = parse_table(content, path.string(), record.notes);
   record.names = table.names;
@@ -160,8 +158,17 @@ Record read_text_record(const Path& path) {
   record.units = table.units;
   record.units.resize(table.columns.size());
   for (const std::vector<double>& column : table.columns) record.columns.push_back(vector(column));
-  take_units(record);
   return record;
+}
+
+/// Without headers it is a table.
+Record read_lvm_or_text(const Path& path, const RecordOptions& options) {
+  if (!is_lvm(path)) return read_text_record(path);
+  if (options.time == lvm_time) {
+    throw InvalidInput(path.string(), fmt::format("{} is no column: it is counted as the time already", lvm_time),
+                       "Leave time out");
+  }
+  return read_lvm(path);
 }
 
 Record read_mat_record(const Path& path) {
@@ -291,16 +298,24 @@ std::size_t Record::place(const std::string& name_or_number) const {
   for (const std::string& name : names) {
     if (!name.empty()) known += (known.empty() ? "" : ", ") + name;
   }
-  throw InvalidInput(file.string(), "has no column " + name_or_number,
-                     fmt::format("It has {} column{}{}{}", columns.size(), columns.size() == 1 ? "" : "s",
-                                 known.empty() ? "" : ": ", known));
+  throw InvalidInput(
+      file.string(), "has no column " + name_or_number,
+      fmt::format("It has {} column{}{}{}{}{}", columns.size(), columns.size() == 1 ? "" : "s",
+                  known.empty() ? "" : ": ", known, left_out.empty() ? "" : ". Left out: ", fmt::join(left_out, ", ")));
 }
 
 double rate_of(const Record& record, double given_hz, std::string_view key, std::vector<std::string>& notes) {
   constexpr double tolerance = 1e-3;
   const double own_hz = record.sample_rate_hz;
+  const bool is_coarse = record.rate_error > tolerance;
+  if (is_coarse && given_hz <= 0.0) {
+    notes.push_back(fmt::format("{}{}: its digits give the sample rate as {:.6g} Hz to {:.2g} %: give {}",
+                                warning_label, record.file.string(), own_hz, 100.0 * record.rate_error, key));
+  }
   if (own_hz <= 0.0 || given_hz <= 0.0) return std::max(own_hz, given_hz);
-  if (std::abs(own_hz / given_hz - 1.0) <= tolerance) return record.rate_is_stated ? given_hz : own_hz;
+  if (std::abs(own_hz / given_hz - 1.0) <= std::max(tolerance, record.rate_error)) {
+    return record.rate_is_stated || is_coarse ? given_hz : own_hz;
+  }
   if (!record.rate_is_stated) {
     throw InvalidInput(record.file.string(),
                        fmt::format("was sampled at {:.6g} Hz, not at {} = {:.6g} Hz", own_hz, key, given_hz));
@@ -308,6 +323,21 @@ double rate_of(const Record& record, double given_hz, std::string_view key, std:
   notes.push_back(fmt::format("{}{}: its header states {:.6g} Hz, and {} = {:.6g} Hz is taken. One of them is wrong.",
                               warning_label, record.file.string(), own_hz, key, given_hz));
   return given_hz;
+}
+
+bool is_read_as_record(const Path& path) {
+  switch (format_of(path)) {
+    case Format::csv:
+    case Format::text:
+    case Format::mat:
+    case Format::uff:
+    case Format::wav:
+    case Format::lvm:
+    case Format::tdms:
+      return true;
+    default:
+      return false;
+  }
 }
 
 UnreadRecord unread_record(const Path& path) {
@@ -359,7 +389,13 @@ Record read_record(const Path& path, const RecordOptions& options) {
   switch (format_of(path)) {
     case Format::csv:
     case Format::text:
-      record = read_text_record(path);
+    case Format::lvm:
+      record = read_lvm_or_text(path, options);
+      take_units(record);
+      break;
+    case Format::tdms:
+      record = read_tdms(path);
+      take_units(record);
       break;
     case Format::mat:
       record = read_mat_record(path);
@@ -373,7 +409,8 @@ Record read_record(const Path& path, const RecordOptions& options) {
     default:
       (void)read_file(path);
       if (const UnreadRecord unread = unread_record(path); !unread.what.empty()) throw unread_error(path, unread);
-      throw InvalidInput(path.string(), "is no record by its ending", "Records are .csv, .txt, .mat, .uff and .wav");
+      throw InvalidInput(path.string(), "is no record by its ending",
+                         "Records are .csv, .txt, .mat, .uff, .wav, .lvm and .tdms");
   }
   if (record.columns.empty()) throw InvalidInput(path.string(), "holds no column of samples");
   for (std::size_t i = 0; i < record.columns.size(); ++i) {

@@ -48,9 +48,11 @@ class ByteReader {
 };
 
 /// Where the wanted channels stand among the columns.
+/// @param left_out  what of the recording is no column, each with the reason
 /// @throws InvalidInput naming the columns that are there
 [[nodiscard]] std::vector<std::size_t> pick_columns(const SampleColumns& wanted, const std::vector<std::string>& names,
-                                                    std::size_t count, const std::string& where);
+                                                    std::size_t count, const std::string& where,
+                                                    const std::vector<std::string>& left_out = {});
 /// @throws InvalidInput where both rates are known and differ by more than `tolerance` of them
 void check_rate(double own_hz, double wanted_hz, double tolerance, const std::string& where);
 
