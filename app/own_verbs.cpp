@@ -46,8 +46,8 @@ Verb init_verb() {
 
 std::vector<VerbOption> monitor_options() {
   return {plain_option("input",
-                       "a recording (.wav .csv .txt .mat .uff), - for standard input, or mqtt://HOST:PORT/TOPIC "
-                       "(mqtts:// with TLS); default: mqtt.topic of monitor.toml"),
+                       "a recording (.wav .csv .txt .mat .uff .lvm .tdms), - for standard input, or "
+                       "mqtt://HOST:PORT/TOPIC (mqtts:// with TLS); default: mqtt.topic of monitor.toml"),
           word_option("format", "of standard input, or of a file whatever its ending (default: auto)",
                       {"auto", "f32", "i16", "csv"}),
           flag_option("live", "do not keep standard input waiting: leave out hops that come too fast"),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -535,18 +536,38 @@ TEST_F(Init, AJobAsksWhatADirectionIsLikeThatWasNotHit) {
 
 // Formats that are not read are named with what to do, and no example stands in their place.
 TEST_F(Init, RecordsThatAreNotReadAreNamed) {
-  put("hit_x_1.lvm", "LabVIEW Measurement\t\nWriter_Version\t2\n");
-  put("hit_x_2.tdms", "TDSm");
-  put("hit_x_3.txt", "LabVIEW Measurement\t\nDelta_X\t3.9e-5\n0\t1\n");
+  put("hit_x_1.tdm", "<usi:tdm>\n");
+  put("hit_x_2.mf4", "MDF");
   const InitFiles files = made({.kind = Template::hits});
   EXPECT_EQ(files.files.size(), 1U);
   EXPECT_EQ(slurp(at("hits.toml")).find("\nfile ="), std::string::npos);
-  ASSERT_EQ(files.notes.size(), 4U);
+  ASSERT_EQ(files.notes.size(), 3U);
   EXPECT_NE(files.notes[0].find("No records of hits were found"), std::string::npos);
-  for (const std::size_t i : {1U, 2U, 3U}) {
-    EXPECT_NE(files.notes[i].find("LabVIEW"), std::string::npos) << files.notes[i];
+  for (const std::size_t i : {1U, 2U}) {
+    EXPECT_NE(files.notes[i].find("which is not read yet"), std::string::npos) << files.notes[i];
     EXPECT_NE(files.notes[i].find("Export it as CSV"), std::string::npos) << files.notes[i];
   }
+}
+
+// Rate and units are in the file, and are no settings.
+TEST_F(Init, HitsOfLabviewAreRead) {
+  std::string text =
+      "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tNo\n***End_of_Header***\t\n\t\n"
+      "Channels\t2\t\t\nY_Unit_Label\tNewtons\tg\t\nX_Dimension\tTime\tTime\t\nDelta_X\t3,906250E-5\t3,906250E-5\t\n"
+      "***End_of_Header***\t\t\t\nX_Value\tHammer\tAcc\tComment\n";
+  for (int i = 0; i < 2000; ++i) {
+    const double response = i < 150 ? 0.0 : std::exp(-0.01 * (i - 150)) * std::sin(0.4 * (i - 150));
+    std::string row = fmt::format("\t{}\t{:.6f}\n", i == 150 ? 100 : 0, response);
+    std::ranges::replace(row, '.', ',');
+    text += row;
+  }
+  put("hit_x_1.lvm", text);
+  static_cast<void>(made({.kind = Template::hits}));
+  EXPECT_EQ(slurp(at("hits.toml")).find("\nsample_rate_hz"), std::string::npos);
+  const modal::Hit hit = modal::read_hits(at("hits.toml")).hits.at(0);
+  EXPECT_NEAR(hit.sample_rate_hz, 25600.0, 1e-6);
+  EXPECT_EQ(hit.force_n(150), 100.0);
+  EXPECT_NEAR(hit.responses.at(0).samples(154), 9.80665 * std::exp(-0.04) * std::sin(1.6), 1e-5);
 }
 
 // A time with three digits is no response; its rate is that of the whole column.

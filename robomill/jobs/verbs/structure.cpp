@@ -73,7 +73,7 @@ Verb frf_verb() {
   return {.name = "frf",
           .button = "Estimate FRFs",
           .purpose = "hammer hits to frequency response functions",
-          .more = "Hits are CSV, TXT, MAT, UFF or WAV. Each has a grade, and a remedy for each fault.",
+          .more = "Hits are CSV, TXT, MAT, UFF, WAV, LVM or TDMS. Each has a grade, and a remedy for each fault.",
           .example = "frf hits.toml -o tip.uff",
           .readme = "robomill/modal/README.md",
           .input = file_option("hits", "hits.toml", {"hits"}, true),

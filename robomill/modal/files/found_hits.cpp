@@ -105,10 +105,7 @@ std::vector<fs::path> records_in(const fs::path& folder) {
   std::vector<fs::path> paths;
   try {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      const io::Format format = io::format_of(entry.path());
-      const bool record = format == io::Format::csv || format == io::Format::text || format == io::Format::mat ||
-                          format == io::Format::uff || format == io::Format::wav ||
-                          !io::unread_record(entry.path()).what.empty();
+      const bool record = io::is_read_as_record(entry.path()) || !io::unread_record(entry.path()).what.empty();
       if (record && entry.is_regular_file() && entry.file_size() <= largest_record_bytes) paths.push_back(entry.path());
     }
   } catch (const fs::filesystem_error& error) {

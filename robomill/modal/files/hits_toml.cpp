@@ -149,7 +149,7 @@ ReadAs response_read_as(ResponseKind kind, const Sensors& sensors) {
 /// Whether the file has names and units that its reader did not convert.
 bool has_own_units(const io::Record& record) {
   const io::Format format = io::format_of(record.file);
-  return format == io::Format::csv || format == io::Format::text || format == io::Format::mat;
+  return format != io::Format::uff && format != io::Format::wav;
 }
 
 /// SI per number of a column whose name, or row of units, states its unit: ax_g, Force [kN]. 1 where none is stated.
@@ -158,7 +158,7 @@ double factor_of_unit(const io::TomlFile& file, const std::string& key, const io
                       const ReadAs& as, std::vector<std::string>& notes) {
   const ColumnGuess said = guess_by_name(record, place);
   const bool by_row = place < record.units.size() && !record.units[place].empty();
-  const std::string by = by_row ? "by the row of units" : "by its name";
+  const std::string by = by_row ? "by " + record.units_by : "by its name";
   if (said.volts > 0.0) {
     if (as.in_volts) return 1.0;
     throw file.reject(key, fmt::format("is a voltage {}, and {} is missing", by, as.sensitivity),

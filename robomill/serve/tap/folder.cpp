@@ -16,16 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_tap_record(const fs::path& path) {
-  switch (io::format_of(path)) {
-    case io::Format::csv:
-    case io::Format::text:
-    case io::Format::mat:
-    case io::Format::uff:
-    case io::Format::wav:
-      return !path.filename().string().starts_with('.');
-    default:
-      return !io::unread_record(path).what.empty();  // named with what to do
-  }
+  if (io::is_read_as_record(path)) return !path.filename().string().starts_with('.');
+  return !io::unread_record(path).what.empty();  // named with what to do
 }
 
 std::string key_of(const fs::path& path) {

@@ -49,7 +49,7 @@ TEST(TapFolder, LeavesOthersAlone) {
   EXPECT_TRUE(folder.look(10, now).empty());
   EXPECT_EQ(folder.look(1, now + 1s), Paths{first});  // at most so many
   EXPECT_EQ(folder.look(10, now + 1s), Paths{named}) << "and none that its rows name and that was there";
-  const std::filesystem::path unread = place.file("hit.tdms", "TDSm");
+  const std::filesystem::path unread = place.file("hit.mf4", "MDF");
   EXPECT_TRUE(folder.look(10, now + 2s).empty());
   EXPECT_EQ(folder.look(10, now + 4s), Paths{unread}) << "to be named";
   std::filesystem::remove_all(place.path());  // a share that is gone
