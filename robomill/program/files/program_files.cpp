@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
+#include "robomill/program/files/gcode/calls.hpp"
 #include "robomill/program/files/gcode/reader.hpp"
 #include "robomill/program/files/program_csv.hpp"
 #include "robomill/program/files/program_lines.hpp"
@@ -55,13 +58,16 @@ void require_known_dialect(const std::filesystem::path& path, std::string_view h
 class Walk {
  public:
   Walk(const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
-      : Walk(ProgramLines((reading.validate(), path)), path, reading, kept) {}
-  Walk(ProgramLines lines, const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
-      : lines_(std::move(lines)),
+      : Walk([path] { return ProgramLines(path); }, path, reading, kept) {}
+  /// @param lines  opens the program's lines anew
+  Walk(const std::function<ProgramLines()>& lines, const std::filesystem::path& path, const ProgramReading& reading,
+       std::size_t kept)
+      : lines_((reading.validate(), lines())),
         file_(path.string()),
         reading_(reading),
         format_(reading.format.value_or(program_format_of(path))),
-        remarks_(kept) {
+        remarks_(kept),
+        calls_(file_, lines) {
     if (format_ == ProgramFormat::gcode) require_known_dialect(path, lines_.head());
     begin();
     if (!reader_->start()) {
@@ -87,7 +93,7 @@ class Walk {
 
   void rewind() {
     lines_.rewind();
-    remarks_.again();
+    calls_.rewind();
     begin();
   }
 
@@ -98,6 +104,8 @@ class Walk {
   void begin() {
     finished_ = false;
     reader_ = make_reader(format_, file_, reading_, remarks_);
+    gcode_ = format_ == ProgramFormat::gcode ? static_cast<GcodeReader*>(reader_.get()) : nullptr;
+    if (gcode_ != nullptr) gcode_->allow_calls();
     while (!reader_->start() && take_line()) {
     }
   }
@@ -105,8 +113,17 @@ class Walk {
   bool take_line() {
     if (finished_) return false;
     std::string_view line;
-    if (!reader_->ended() && lines_.next(line)) {
+    if (!reader_->ended() && calls_.depth() > 0) {
+      const GcodeCalls::Line called = calls_.next();
+      remarks_.repeat(called.again);
+      reader_->go_on_at(called.number);
+      reader_->take(called.text, called.ahead);
+      follow_calls();
+    } else if (!reader_->ended() && lines_.next(line)) {
+      remarks_.repeat(lines_.number() <= farthest_);
+      farthest_ = std::max(farthest_, lines_.number());
       reader_->take(line, lines_.ahead());
+      if (gcode_ != nullptr) follow_calls();
     } else {
       reader_->finish();
       finished_ = true;
@@ -114,12 +131,26 @@ class Walk {
     return true;
   }
 
+  void follow_calls() {
+    const std::size_t depth = calls_.depth();
+    const bool returns = gcode_->take_return();
+    const std::optional<GcodeCall> call = gcode_->take_call();
+    if (!returns && !call) return;
+    if (returns && depth > 0) calls_.give_back();
+    if (call) calls_.call(*call);
+    gcode_->set_depth(calls_.depth());
+    if (calls_.depth() == 0) reader_->go_on_at(lines_.number() + 1);
+  }
+
   ProgramLines lines_;
   std::string file_;
   ProgramReading reading_;
   ProgramFormat format_;
   ProgramRemarks remarks_;
+  GcodeCalls calls_;
   std::unique_ptr<ProgramReader> reader_;
+  GcodeReader* gcode_ = nullptr;  ///< the reader, where it is one
+  std::size_t farthest_ = 0;      ///< line of the file that has been taken, in any pass
   bool finished_ = false;
   Pose start_;
 };
@@ -220,9 +251,9 @@ Program read_program(const std::filesystem::path& path, const ProgramReading& re
   return whole(walk);
 }
 
-Program read_program_text(std::string text, const std::filesystem::path& name, const ProgramReading& reading) {
-  reading.validate();
-  Walk walk(ProgramLines(name.string(), std::move(text)), name, reading, std::numeric_limits<std::size_t>::max());
+Program read_program_text(const std::string& text, const std::filesystem::path& name, const ProgramReading& reading) {
+  const std::function<ProgramLines()> lines = [&] { return ProgramLines(name.string(), text); };
+  Walk walk(lines, name, reading, std::numeric_limits<std::size_t>::max());
   return whole(walk);
 }
 

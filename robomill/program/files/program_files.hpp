@@ -118,7 +118,7 @@ class ROBOMILL_API ProgramFile final : public Source {
 
 /// The same of a text in memory.
 /// @param name  as of a file, for errors; its ending is the format's where the reading names none
-[[nodiscard]] ROBOMILL_API Program read_program_text(std::string text, const std::filesystem::path& name,
+[[nodiscard]] ROBOMILL_API Program read_program_text(const std::string& text, const std::filesystem::path& name,
                                                      const ProgramReading& reading = {});
 
 }  // namespace robomill::program

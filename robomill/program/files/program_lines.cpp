@@ -20,6 +20,16 @@ constexpr std::size_t least_bytes = 2 * (ProgramLines::longest + 2);
 
 }  // namespace
 
+LineEnd line_end(std::string_view text) {
+  std::size_t at = text.find('\n');
+  const bool feeds = at != std::string_view::npos;
+  if (!feeds) at = text.size();
+  // Some controllers end lines by a carriage return alone.
+  const std::size_t returns = text.substr(0, at).find('\r');
+  if (returns == std::string_view::npos) return {.at = at, .bytes = feeds ? std::size_t{1} : 0};
+  return {.at = returns, .bytes = feeds && returns + 1 == at ? std::size_t{2} : 1};
+}
+
 ProgramLines::ProgramLines(const std::filesystem::path& path)
     : ProgramLines(path.string(), std::make_unique<std::ifstream>(io::open_file(path))) {}
 
@@ -54,10 +64,9 @@ bool ProgramLines::next(std::string_view& line) {
   ++line_;
   const char* const first = buffer_.data() + begin_;
   const std::size_t count = end_ - begin_;
-  const void* const ending = std::memchr(first, '\n', std::min(count, longest + 2));
-  std::size_t length = ending != nullptr ? static_cast<std::size_t>(static_cast<const char*>(ending) - first) : count;
-  begin_ += ending != nullptr ? length + 1 : count;
-  if (length > 0 && first[length - 1] == '\r') --length;
+  const LineEnd ending = line_end({first, std::min(count, longest + 2)});
+  const std::size_t length = ending.bytes > 0 ? ending.at : count;
+  begin_ += length + ending.bytes;
   if (length > longest) {
     throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", name_, line_),
                                            .rule = fmt::format("is a line of more than {} bytes", longest),

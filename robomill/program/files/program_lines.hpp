@@ -9,6 +9,13 @@
 
 namespace robomill::program {
 
+/// How a text's first line ends: with LF, CR LF, or CR alone.
+struct LineEnd {
+  std::size_t at = 0;     ///< where its end begins: behind the text where there is none
+  std::size_t bytes = 0;  ///< of the end
+};
+[[nodiscard]] LineEnd line_end(std::string_view text);
+
 /// The lines of a text one after another; of a file in memory that does not grow with it.
 class ProgramLines {
  public:
@@ -24,6 +31,8 @@ class ProgramLines {
   bool next(std::string_view& line);
   /// The first letter of the line that comes next, blanks aside; '\n' where there is none.
   [[nodiscard]] char ahead() const;
+  /// Of the line that came last, from 1.
+  [[nodiscard]] std::size_t number() const { return line_; }
   /// What of the text that comes next is in memory.
   [[nodiscard]] std::string_view head() const { return {buffer_.data() + begin_, end_ - begin_}; }
   /// Begins anew. @throws InvalidInput if the file is a pipe

@@ -20,6 +20,29 @@ constexpr double largest_length_error = 1e-3;
 constexpr double silent_length_error = 1e-6;  ///< of six printed decimals
 constexpr double largest_turn_rad = 179.9 * units::deg;
 
+/// The sentence of a count: "2 arcs …, the first in line 5…".
+struct CountText {
+  const char* one;
+  const char* many;
+  const char* more;  ///< behind the line, with the largest value
+};
+constexpr std::array<CountText, static_cast<std::size_t>(ProgramRemarks::Count::last)> count_texts = {{
+    {"arc ends within a rounding of its begin and is read as almost a whole turn",
+     "arcs end within a rounding of their begin and are read as almost whole turns",
+     ": where a short arc is meant, give more decimals"},
+    {"arc ends within a rounding of its begin and is read as almost nothing",
+     "arcs end within a rounding of their begin and are read as almost nothing",
+     ": where a whole turn is meant, let it end where it begins"},
+    {"arc has another radius at its end than at its begin, as the program's few decimals make it",
+     "arcs have another radius at their end than at their begin, as the program's few decimals make it",
+     ", by up to {:.2g} mm: give more decimals"},
+    {"line with a slash (block delete) is left out", "lines with a slash (block delete) are left out",
+     ", as with the machine's switch on"},
+    {"rapid is left out where the tool's position in the part is not known",
+     "rapids are left out where the tool's position in the part is not known",
+     ": the next position brings the tool back above the part"},
+}};
+
 }  // namespace
 
 void ProgramRemarks::Counted::add(std::size_t line, double value) {
@@ -27,30 +50,25 @@ void ProgramRemarks::Counted::add(std::size_t line, double value) {
   most = std::max(most, value);
 }
 
-bool ProgramRemarks::is_new(std::size_t line) {
-  last_ = std::max(last_, line);
-  return line > reported_;
-}
-
 void ProgramRemarks::skip(std::size_t line, std::string_view what) {
-  if (!is_new(line)) return;
+  if (repeated_) return;
   if (skipped_count_++ < most_) skipped_.push_back({.line = line, .what = std::string(what)});
 }
 
 void ProgramRemarks::normalised(std::size_t line, double error) {
-  if (is_new(line)) normalised_.add(line, error);
+  if (!repeated_) normalised_.add(line, error);
 }
 
 void ProgramRemarks::long_dwell(std::size_t line, double seconds) {
-  if (is_new(line)) long_dwells_.add(line, seconds);
+  if (!repeated_) long_dwells_.add(line, seconds);
 }
 
 void ProgramRemarks::operator_stop(std::size_t line) {
-  if (is_new(line)) operator_stops_.add(line, 0.0);
+  if (!repeated_) operator_stops_.add(line, 0.0);
 }
 
 void ProgramRemarks::no_center_point(std::size_t line) {
-  if (is_new(line)) no_center_point_.add(line, 0.0);
+  if (!repeated_) no_center_point_.add(line, 0.0);
 }
 
 std::vector<std::string> ProgramRemarks::notes() const {
@@ -71,33 +89,54 @@ std::vector<std::string> ProgramRemarks::notes() const {
         "in a trajectory.",
         operator_stops_.count, operator_stops_.count == 1 ? "" : "s", operator_stops_.first_line));
   }
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (counts_[i].count == 0) continue;
+    const CountText& text = count_texts[i];
+    out.push_back(fmt::format("{} {}, the first in line {}{}.", counts_[i].count,
+                              counts_[i].count == 1 ? text.one : text.many, counts_[i].first_line,
+                              fmt::format(fmt::runtime(text.more), counts_[i].most)));
+  }
   return out;
 }
 
+void ProgramRemarks::count(Count what, std::size_t line, double value) {
+  if (!repeated_) counts_[static_cast<std::size_t>(what)].add(line, value);
+}
+
+void ProgramRemarks::assume(Assumption assumption) {
+  add_assumed(assumed_, {std::move(assumption)});
+}
+
 std::vector<Assumption> ProgramRemarks::assumed() const {
-  std::vector<Assumption> out;
+  std::vector<Assumption> out = assumed_;
   if (no_center_point_.count > 0) {
     out.push_back(
         {.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
          .taken = "those of the tool's tip",
          .key = "G43.4, M128 or M428"});
   }
-  if (points_end_words_ && whole_line_ > 0) {
-    out.push_back(
-        {.what = fmt::format("{} in line {}, without the point that other positions have", whole_word_, whole_line_),
-         .taken = whole_unit_ + ", where some controls count thousandths",
-         .key = fmt::format("{}.", whole_word_)});
+  if (mixed_points()) {
+    out.push_back({.what = fmt::format("{} in line {}, without the point that other positions have", points_.whole_word,
+                                       points_.whole_line),
+                   .taken = whole_unit_ + ", where some controls count thousandths",
+                   .key = fmt::format("{}.", points_.whole_word)});
   }
   return out;
 }
 
+std::optional<ProgramRemarks::MixedPoints> ProgramRemarks::mixed_points() const {
+  return points_.point_line > 0 && points_.whole_line > 0 ? std::optional(points_) : std::nullopt;
+}
+
 void ProgramRemarks::coordinate(std::size_t line, std::string_view word, std::string_view unit) {
-  if (word.ends_with('.')) points_end_words_ = true;
-  if (whole_line_ > 0 || word.find('.') != std::string_view::npos) return;
-  if (word.find_first_of("123456789") == std::string_view::npos) return;  // 0 is 0
-  whole_line_ = line;
-  whole_unit_ = unit;
-  for (const char letter : word) whole_word_ += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  const bool ends_in_point = word.ends_with('.');
+  if (ends_in_point ? points_.point_line > 0 : points_.whole_line > 0) return;
+  if (!ends_in_point && word.find('.') != std::string_view::npos) return;
+  if (!ends_in_point && word.find_first_of("123456789") == std::string_view::npos) return;  // 0 is 0
+  std::string& shown = ends_in_point ? points_.point_word : points_.whole_word;
+  for (const char letter : word) shown += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  (ends_in_point ? points_.point_line : points_.whole_line) = line;
+  if (!ends_in_point) whole_unit_ = unit;
 }
 
 std::string printable(std::string_view text, std::size_t most) {
@@ -125,10 +164,15 @@ void ProgramReader::take(std::string_view line, char ahead) {
     reject({}, std::nullopt, "", fmt::format("begins a statement of more than {} bytes", ProgramLines::longest));
   }
   continued_ = part.continues;
-  if (!continued_) finish();
+  if (!continued_) read_joined();
 }
 
 void ProgramReader::finish() {
+  read_joined();
+  at_end();
+}
+
+void ProgramReader::read_joined() {
   continued_ = false;
   if (joined_.empty()) return;
   read(joined_);

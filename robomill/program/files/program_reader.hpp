@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -17,8 +18,8 @@ class ProgramRemarks {
   /// @param most  that are kept; the others are counted
   explicit ProgramRemarks(std::size_t most) : most_(most) {}
 
-  /// The program begins anew: what its lines have said is known.
-  void again() { reported_ = last_; }
+  /// What the next line says has been reported before.
+  void repeat(bool repeated) { repeated_ = repeated; }
   void skip(std::size_t line, std::string_view what);
   /// @param error  |length - 1| of the axis
   void normalised(std::size_t line, double error);
@@ -28,6 +29,23 @@ class ProgramRemarks {
   void no_center_point(std::size_t line);
   /// A word of a position. Where some end in a point, "Z50.", others without one may count the smallest step.
   void coordinate(std::size_t line, std::string_view word, std::string_view unit);
+  /// A word of a position that ends in a point, and one that is whole without it; both once the program has both.
+  struct MixedPoints {
+    std::size_t point_line = 0, whole_line = 0;
+    std::string point_word = {}, whole_word = {};
+  };
+  [[nodiscard]] std::optional<MixedPoints> mixed_points() const;
+  /// What a program's lines are counted for: a sentence each, with the first line.
+  enum class Count : std::size_t {
+    almost_whole,    ///< arcs that end within a rounding of their begin and go all the way round
+    almost_nothing,  ///< … and do not
+    rounded_radius,  ///< arcs whose radius a program's few decimals change
+    deleted_block,   ///< lines with a slash
+    lost_rapid,      ///< rapids where the tool's position is not known
+    last             ///< how many
+  };
+  void count(Count what, std::size_t line, double value = 0.0);
+  void assume(Assumption assumption);
 
   [[nodiscard]] std::vector<Skipped>& skipped() { return skipped_; }
   [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
@@ -40,16 +58,15 @@ class ProgramRemarks {
     double most = 0.0;
     void add(std::size_t line, double value);
   };
-  bool is_new(std::size_t line);
-
   std::size_t most_;
-  std::size_t reported_ = 0, last_ = 0;  ///< lines
+  bool repeated_ = false;
   std::vector<Skipped> skipped_;
   std::size_t skipped_count_ = 0;
   Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
-  bool points_end_words_ = false;
-  std::size_t whole_line_ = 0;  ///< of the first whole number without a point, but 0
-  std::string whole_word_, whole_unit_;
+  std::array<Counted, static_cast<std::size_t>(Count::last)> counts_ = {};
+  std::vector<Assumption> assumed_;
+  MixedPoints points_;  ///< the first of each; a line of 0: none. A whole number is not 0
+  std::string whole_unit_;
 };
 
 /// Letters of a file as a message may show them: the first `most`, those that are not plain as \x1b.
@@ -69,8 +86,10 @@ class ProgramReader {
   /// @param ahead  first letter of the line after it
   /// @throws InvalidInput as ProgramFile::next
   void take(std::string_view line, char ahead = '\n');
-  /// The file has ended.
+  /// The file has ended, or what follows is not carried out.
   void finish();
+  /// The next line has this number.
+  void go_on_at(std::size_t line) { count_ = line - 1; }
   /// The next block of the lines taken; false where they have no more.
   bool pop(Block& out);
   /// What follows is not carried out.
@@ -98,6 +117,8 @@ class ProgramReader {
   static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
   /// Carries out a statement; calls begin_at, move or dwell at most once.
   virtual void read(std::string_view statement) = 0;
+  /// The program has ended.
+  virtual void at_end() {}
   /// Turns `block_` into the statement's next block; false where it has none.
   virtual bool advance() { return false; }
 
@@ -142,6 +163,8 @@ class ProgramReader {
   bool ready_ = false;  ///< block_ is to be taken away
 
  private:
+  void read_joined();
+
   std::size_t count_ = 0;  ///< of lines
   bool continued_ = false;
   std::string joined_;  ///< of a statement over several lines

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "robomill/io/text.hpp"
+#include "robomill/program/files/program_lines.hpp"
 
 namespace robomill::program {
 namespace {
@@ -187,8 +188,9 @@ std::string without_comments(std::string_view line) {
 
 std::optional<UnreadDialect> unread_dialect(std::string_view ending, std::string_view head) {
   for (std::size_t number = 1; !head.empty() && number <= most_lines; ++number) {
-    const std::string_view line = head.substr(0, head.find('\n'));
-    head.remove_prefix(std::min(line.size() + 1, head.size()));
+    const LineEnd end = line_end(head);
+    const std::string_view line = head.substr(0, end.at);
+    head.remove_prefix(end.at + end.bytes);
     const std::string text = plain(line), code = plain(without_comments(line));
     for (const Dialect& dialect : dialects) {
       const bool named = std::ranges::find(dialect.endings, ending) != dialect.endings.end();

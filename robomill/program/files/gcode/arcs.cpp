@@ -21,12 +21,8 @@ constexpr double same_place_m = 1e-10;
 }  // namespace
 
 void GcodeReader::go_round(const Line& line) {
-  static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!known_[i]) {
-      reject(names[i], std::nullopt, "", "is not known where the first arc begins", "Begin with a G0 to X, Y and Z");
-    }
-  }
+  if (const char* const axis = unknown_axis()) reject_unknown(axis);
+  if (pending_) reject_unknown("X, Y, Z");
   for (const char letter : {'l', 'q'}) {
     if (line.has(letter)) {
       reject(letter == 'l' ? "L" : "Q", std::nullopt, "", "is not read with an arc: what it would change is not known",
@@ -74,6 +70,7 @@ void GcodeReader::split(PartedMove parted, double duration_s, const char* field)
 
 bool GcodeReader::advance() {
   if (!(parted_.next < parted_.count)) {
+    if (next_step_ < steps_.size()) return take_step();
     if (stop_after_ == OperatorStop::none) return false;
     dwell(0.0, std::exchange(stop_after_, OperatorStop::none));
     return true;
@@ -82,6 +79,22 @@ bool GcodeReader::advance() {
   const Pose end = {.tip_m = parted_.tip_at(share), .axis = parted_.turn ? parted_.turn->axis_at(share) : pose_.axis};
   move(parted_.kind, end, parted_.duration_s, parted_.deviation);
   return true;
+}
+
+bool GcodeReader::take_step() {
+  while (next_step_ < steps_.size()) {
+    const Step& step = steps_[next_step_++];
+    if (step.spindle) spindle_ = *step.spindle;
+    const Pose end = {.tip_m = step.tip_m, .axis = step.axis.value_or(pose_.axis)};
+    if (step.kind == Block::Kind::dwell) {
+      dwell(step.duration_s, step.stop);
+      return true;
+    }
+    if (!moves_to(end)) continue;
+    move(step.kind, end, step.duration_s);
+    return true;
+  }
+  return advance();
 }
 
 double GcodeReader::turns_of(const Line& line) const {
@@ -95,9 +108,30 @@ double GcodeReader::turns_of(const Line& line) const {
 }
 
 // As LinuxCNC: a program's last digit, or a thousandth of the radius, but never half a millimetre.
-double GcodeReader::allowed_radius_error_m(double radius_m) const {
+double GcodeReader::strict_radius_error_m(double radius_m) const {
   const double digits_m = inches_ ? 0.0005 * units::inch : 0.005 * units::mm;
   return std::min(0.5 * units::mm, std::max(digits_m, 1e-3 * radius_m));
+}
+
+double GcodeReader::allowed_radius_error_m(double radius_m) const {
+  return std::max(strict_radius_error_m(radius_m), rounding_m());
+}
+
+// Of an arc's radius by the digits of its begin, end and centre: half a last digit each way, of three points. A
+// program that has written fewer decimals may have dropped zeros.
+double GcodeReader::rounding_m() const {
+  const int least = inches_ ? 3 : 2;
+  return 2.2 * std::pow(10.0, -std::max(decimals_, least)) * unit_m();
+}
+
+void GcodeReader::note_rounding(const Arc& arc, double chord_m, double strict_m) const {
+  using Count = ProgramRemarks::Count;
+  const double error_m = std::abs(arc.end_radius_m - arc.begin_radius_m);
+  if (error_m > strict_m) remarks_.count(Count::rounded_radius, line_, error_m / units::mm);
+  constexpr double small = 3.0;
+  const bool short_chord = chord_m > same_place_m && chord_m <= rounding_m();
+  if (!short_chord || arc.begin_radius_m < small * chord_m) return;
+  remarks_.count(arc.sweep_rad > std::numbers::pi ? Count::almost_whole : Count::almost_nothing, line_);
 }
 
 Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) const {
@@ -118,7 +152,9 @@ Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) co
     reject(plane_.centers, std::nullopt, "", "must both be given where centres are absolute (G90.1)");
   }
   const Vector2d center_m = unit_m() * Vector2d(first.value_or(0.0), second.value_or(0.0));
-  return centers_absolute_ ? center_m : from + center_m;
+  if (!centers_absolute_) return from + center_m;
+  const Vector3d origin = origin_m().value_or(Vector3d::Zero());
+  return center_m + Vector2d(origin[plane_.first], origin[plane_.second]);
 }
 
 // The centre lies on the perpendicular bisector of the ends: left of the way for a short arc that turns left.
@@ -176,6 +212,8 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
   const bool whole = (to - from).norm() <= same_place_m;
   double sweep = whole ? 0.0 : std::atan2(side * (a.x() * b.y() - a.y() * b.x()), a.dot(b));
   if (sweep <= 0.0) sweep += 2.0 * std::numbers::pi;
+  arc.sweep_rad = sweep;
+  note_rounding(arc, (to - from).norm(), strict_radius_error_m(arc.begin_radius_m));
   arc.sweep_rad = sweep + 2.0 * std::numbers::pi * (turns_of(line) - 1.0);
   const auto in_space = [&](const Vector2d& in_plane, double height) {
     Vector3d out;

@@ -11,28 +11,23 @@ struct Still {
   int code;
   GcodeGroup group;
 };
-constexpr std::array<Still, 17> still = {{{150, GcodeGroup::other},
-                                          {400, GcodeGroup::radius},
-                                          {430, GcodeGroup::length},
-                                          {434, GcodeGroup::length},
-                                          {435, GcodeGroup::length},
-                                          {490, GcodeGroup::length},
-                                          {500, GcodeGroup::other},
-                                          {610, GcodeGroup::path},
-                                          {611, GcodeGroup::path},
-                                          {640, GcodeGroup::path},
-                                          {690, GcodeGroup::other},
-                                          {921, GcodeGroup::other},
-                                          {922, GcodeGroup::other},
-                                          {970, GcodeGroup::other},
-                                          {980, GcodeGroup::other},
-                                          {990, GcodeGroup::other},
-                                          {2340, GcodeGroup::length}}};
+/// Look-ahead, smoothing, exact stop, and modes that are turned off: no position changes its meaning.
+constexpr std::array<Still, 35> still = {{
+    {50, GcodeGroup::other},    {51, GcodeGroup::other},    {80, GcodeGroup::other},   {90, GcodeGroup::other},
+    {131, GcodeGroup::other},   {150, GcodeGroup::other},   {220, GcodeGroup::other},  {230, GcodeGroup::other},
+    {250, GcodeGroup::other},   {281, GcodeGroup::other},   {301, GcodeGroup::other},  {400, GcodeGroup::radius},
+    {401, GcodeGroup::other},   {430, GcodeGroup::length},  {434, GcodeGroup::length}, {435, GcodeGroup::length},
+    {490, GcodeGroup::length},  {500, GcodeGroup::other},   {501, GcodeGroup::other},  {542, GcodeGroup::other},
+    {610, GcodeGroup::path},    {611, GcodeGroup::path},    {620, GcodeGroup::path},   {630, GcodeGroup::path},
+    {640, GcodeGroup::path},    {670, GcodeGroup::other},   {690, GcodeGroup::other},  {970, GcodeGroup::other},
+    {1000, GcodeGroup::other},  {1030, GcodeGroup::other},  {1130, GcodeGroup::other}, {1870, GcodeGroup::path},
+    {2340, GcodeGroup::length}, {2550, GcodeGroup::other},  {2690, GcodeGroup::other},
+}};
 
 /// LinuxCNC's reference of M codes, the mill manuals of Haas (Fanuc's where they agree), and Heidenhain's of its ISO
 /// programs. A code that means motion or order on one of them is rejected on all, because a file does not say whose it
 /// is. Where nothing else is said, M100 to M199 are the user's own in LinuxCNC.
-constexpr std::array<Mcode, 85> mcode_rows = {{
+constexpr std::array<Mcode, 86> mcode_rows = {{
     {0, McodeAct::stop, "pauses the program", "stops the program", "stops the program"},
     {1, McodeAct::optional_stop, "pauses the program where the switch is on", "stops where the switch is on",
      "stops where the switch is on"},
@@ -52,6 +47,7 @@ constexpr std::array<Mcode, 85> mcode_rows = {{
     {14, McodeAct::rejected, "", "", "spindle counter-clockwise and coolant on"},
     {16, McodeAct::tool_change, "", "changes the tool", ""},
     {19, McodeAct::spindle_off, "orients the spindle", "orients the spindle", "orients the spindle"},
+    {29, McodeAct::nothing, "", "couples feed and spindle for tapping", ""},
     {30, McodeAct::end, "ends the program", "ends the program", "ends the program"},
     {31, McodeAct::nothing, "", "chip conveyor forward", ""},
     {33, McodeAct::nothing, "", "chip conveyor stop", ""},
@@ -143,38 +139,65 @@ const GcodeGroup* still_gcode(int code) {
 }
 
 const char* gcode_hint(int code) {
+  switch (code) {
+    case 680:
+    case 682:
+    case 510:
+    case 511:
+    case 1010:
+    case 160:
+    case 70:
+    case 71:
+      return "It would change what the words of positions mean";
+    case 531:
+      return "It turns the rotary axes by a tilted frame that is not read. Let the CAM system write positions of the tip";
+    case 2540:
+    case 544:
+      return "It would move the program's frame by what the machine has measured. Let the CAM system write positions of "
+             "the tip";
+    case 650:
+    case 660:
+    case 661:
+      return "It calls a macro with arguments. Let the CAM system write the moves that the macro would make";
+    case 760:
+      return "It bores with a shift of the spindle in Fanuc and Haas, and cuts a thread in LinuxCNC. Let the CAM system "
+             "write straight moves";
+    case 870:
+      return "It bores from behind or waits for the operator, by the control. Let the CAM system write straight moves";
+    default:
+      break;
+  }
   switch (code / 10) {
     case 2:
     case 3:
     case 5:
+    case 6:
       return "Let the CAM system write curves as arcs G2, G3 or straight moves";
-    case 28:
-    case 30:
-    case 53:
+    case 12:
+    case 13:
+    case 47:
+    case 150:
+      return "Let the CAM system write pockets and engraving as straight moves and arcs";
+    case 27:
+    case 29:
       return "Where the machine's own positions lie in the part is not known here";
-    case 10:
-    case 52:
-    case 92:
-      return "It would move the program's frame";
+    case 31:
+    case 36:
+    case 37:
+    case 38:
+      return "It probes: what follows depends on what it finds";
     case 41:
     case 42:
       return "Let the CAM system write the path of the tool's tip";
     case 43:
       return "It would move the tip by the words that come with it";
-    case 51:
-    case 68:
-    case 16:
-    case 7:
-      return "It would change what the words of positions mean";
-    case 70:
-      return "G70 is the unit inch of DIN 66025 and Sinumerik: write G20. Elsewhere it is a cycle";
-    case 71:
-      return "G71 is the unit mm of DIN 66025 and Sinumerik: write G21. Elsewhere it is a cycle";
+    case 92:
+      return "It would move the program's frame";
     case 95:
     case 96:
       return "Use G93 or G94, with a spindle speed in rpm";
     default:
-      return code >= 730 && code <= 890 ? "Let the CAM system write cycles as straight moves" : "";
+      return "";
   }
 }
 

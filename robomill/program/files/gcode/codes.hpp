@@ -17,7 +17,9 @@ enum class GcodeGroup : std::uint32_t {
   system = 128,
   path = 256,
   center = 512,
-  other = 1024  ///< no group
+  cycle = 1024,
+  retract = 2048,
+  other = 4096  ///< no group
 };
 
 /// The group of a G code, in tenths, that moves neither the tool nor its frame and is left out; null for others.

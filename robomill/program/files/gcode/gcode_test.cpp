@@ -100,6 +100,9 @@ TEST(Gcode, SpacesCaseCommentsNumbersAndDeletedBlocks) {
   ASSERT_EQ(program.skipped.size(), 2U);
   EXPECT_EQ(program.skipped[0].what, "O1234");
   EXPECT_EQ(program.skipped[1].what, "/g1x99f1");
+  ASSERT_EQ(program.notes.size(), 1U);
+  EXPECT_EQ(program.notes[0],
+            "1 line with a slash (block delete) is left out, the first in line 3, as with the machine's switch on.");
 }
 
 TEST(Gcode, TheStartIsTheFirstCompletePosition) {
@@ -137,11 +140,12 @@ TEST(Gcode, RejectsWithLineWordAndRule) {
   expect_rejected(head + "G1 X+-1 F1\n", "must be a letter and a number");
   expect_rejected(head + "G1 X F1\n", "must be a letter and a number");
   expect_rejected(head + "G1 X1e3 F1\n", "E = 3; is a word not known here");
+  expect_rejected(head + "G1 X1,R2 F1\n", "part.ngc:2: \",r2f1\": rounds or chamfers a corner, which is not read");
   expect_rejected(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
   expect_rejected(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
   expect_rejected(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
   expect_rejected(head + "G5 X1 I1 J0 P1 Q1\n",
-                  "part.ngc:2: G = 5; is not read: it may move the tool or its frame. Let the CAM");
+                  "part.ngc:2: G = 5; is a curve unless P alone stands with it (look-ahead of Fanuc). Let the CAM");
   expect_rejected(head + "G93 G1 X1 F0\n", "part.ngc:2: F = 0 1/min; must be > 0 for a move at feed");
   expect_rejected(head + "G1 X1 F2000000000\n", "F = 2e+09; is too large for any machine");
   expect_rejected(head + "G58.5\n", "G = 58.5; is no G code");
@@ -150,17 +154,18 @@ TEST(Gcode, RejectsWithLineWordAndRule) {
   expect_rejected(head + "G68 R30\n", "what the words of positions mean");
   expect_rejected(head + "G95\n", "Use G93 or G94");
   expect_rejected(head + "G1 X1 R2 F1\n", "part.ngc:2: R = 2 mm; stands on a line that is no arc");
-  expect_rejected(head + "G92 X0\n", "It would move the program's frame");
-  expect_rejected(head + "G10 L2 P1 X1\n", "G = 10; is not read");
-  expect_rejected(head + "G28\n", "G = 28; is not read");
-  expect_rejected(head + "G81 X1 Z-1 R1 F1\n", "cycles");
-  expect_rejected(head + "G55\n", "G = 55; changes the coordinate system");
+  expect_rejected(head + "G92.3\n", "It would move the program's frame");
+  expect_rejected(head + "G10 L20 P1 X1\n", "L = 20; sets an extended work frame (Fanuc, Haas) or moves one");
+  expect_rejected(head + "G29 X1\n", "G = 29; is not read");
+  expect_rejected(head + "G76 X1 Z-1 R1 F1\n", "cuts a thread in LinuxCNC");
+  expect_rejected(head + "G65 P9810 X1\n", "It calls a macro with arguments");
   expect_rejected(head + "G1234567\n", "is no G code");
   expect_rejected(head + "G1.05 X1\n", "is no G code");
   expect_rejected(head + "G4 X2\n", "part.ngc:2: G = 4; stands on a line with positions");
   expect_rejected(head + "G1 X#1 F1\n", "must be a letter and a number");
   expect_rejected(head + "#1=5\n", "is a parameter or an expression");
-  expect_rejected(head + "o100 call [1]\n", "part.ngc:2: \"call[1]\": must be a letter and a number");
+  expect_rejected(head + "o100 call [1]\n", "part.ngc:2: \"o100 call\": is a subroutine or its control");
+  expect_rejected(head + "o100 while [1]\n", "part.ngc:2: \"o100 while\": is a subroutine or its control");
   expect_rejected(head + "o100 X1\n", "O = 100; is a subroutine or its control");
   expect_rejected(head + "osub call\n", "is a subroutine");
   expect_rejected(head + "G1 X1 F1 (half\n", "is a comment that does not end");
@@ -186,7 +191,7 @@ TEST(Gcode, RejectsAxesThatTheMachineDoesNotHave) {
 }
 
 TEST(Gcode, ADwellStandsWhereTheLastMoveEnded) {
-  const Program program = read("G4 P1\nG0 X1 Y2 Z3 S100\nG04 P0.5\nG1 X2 F60\nG4 P150 F90 (a new feed)\nG4 P0\nX3\n");
+  const Program program = read("G4 P1\nG0 X1 Y2 Z3 S100\nG04 P0.5\nG1 X2 F60\nG4 P150. F90 (a new feed)\nG4 P0\nX3\n");
   ASSERT_EQ(program.blocks.size(), 4U);
   EXPECT_EQ(program.blocks[0].kind, Block::Kind::dwell);
   EXPECT_EQ(program.blocks[0].duration_s, 0.5);

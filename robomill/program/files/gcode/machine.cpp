@@ -1,6 +1,7 @@
 // What a program in G-code says to its machine: M codes, tools, lengths, the tool centre point.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -45,13 +46,19 @@ void GcodeReader::take_m(const GcodeWords::Word& word, Line& line) {
   }
   switch (code->act) {
     case McodeAct::rejected:
+      if (calls_allowed_ && (code->code == 97 || code->code == 98)) {
+        line.call = word;
+        return;
+      }
       reject("M", word.number, "", fmt::format("is not carried out here: {}", meaning_of(*code)),
              "Let the CAM system write the program without it");
     case McodeAct::nothing:
       break;
     case McodeAct::end:
-      ended_ = true;
       line.begins_again = code->code == 99;
+      returns_ = line.begins_again && depth_ > 0;
+      if (returns_) return;
+      ended_ = true;
       if (!line.begins_again) return;
       break;
     case McodeAct::stop:
@@ -105,7 +112,7 @@ void GcodeReader::set_up(const Line& line) {
   }
   constexpr double unknown = -1.0;
   if (line.tool) prepared_tool_ = *line.tool;
-  if (line.tool_change) tool_ = {.value = prepared_tool_.value_or(unknown), .line = line_, .code = "M6"};
+  if (line.tool_change) mount(prepared_tool_.value_or(unknown));
   if (line.length) set_length(*line.length, line);
   if (line.center_point) {
     const int code = static_cast<int>(line.center_point->number);
@@ -126,35 +133,90 @@ void GcodeReader::set_length(const GcodeWords::Word& word, const Line& line) {
   }
 }
 
+void GcodeReader::mount(double number) {
+  constexpr std::size_t most = 100;
+  tool_ = {.value = number, .line = line_, .code = "M6"};
+  ++mounted_count_;
+  if (mounted_.size() < most) mounted_.push_back({.number = number, .line = line_});
+}
+
+// What follows the first cut of a second tool is not carried out.
+void GcodeReader::list_tools(std::string_view statement) {
+  try {
+    words_.scan(statement, file_, line_);
+  } catch (const InvalidInput&) {
+    return;  // names no tool
+  }
+  bool changes = false;
+  for (const GcodeWords::Word& word : words_.words()) {
+    if (word.letter == 't') prepared_tool_ = word.number;
+    if (word.letter != 'm') continue;
+    changes = changes || word.number == 6.0 || word.number == 16.0;
+    ended_ = ended_ || word.number == 2.0 || word.number == 30.0;
+  }
+  if (changes) mount(prepared_tool_.value_or(-1.0));
+}
+
+void GcodeReader::at_end() {
+  if (!leaves_out_sub_.empty()) {
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, sub_line_),
+                                           .field = fmt::format("o{} sub", leaves_out_sub_),
+                                           .rule = "begins a subprogram that does not end",
+                                           .hint = "Is its endsub missing?"});
+  }
+  if (!second_tool_) return;
+  constexpr std::size_t most_named = 12;
+  std::string tools;
+  for (std::size_t i = 0; i < std::min(mounted_.size(), most_named); ++i) {
+    const Mounted& tool = mounted_[i];
+    tools += fmt::format("{}{} (line {})", i == 0 ? "" : ", ",
+                         tool.number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", tool.number), tool.line);
+  }
+  if (mounted_count_ > most_named) tools += fmt::format(" and {} more", mounted_count_ - most_named);
+  throw InvalidInput(InvalidInput::Parts{
+      .where = fmt::format("{}:{}", file_, second_tool_->line),
+      .field = second_tool_->code,
+      .rule = fmt::format("{}, and line {} cuts; the program mounts {}", second_tool_->what, second_tool_line_, tools),
+      .hint = second_tool_->hint});
+}
+
 void GcodeReader::begin_cutting() {
   if (!cutting_) {
     cutting_ = true;
     cutting_tool_ = tool_.value;
     cutting_length_ = length_.value;
   }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!lost_rotary_[i] || !reading_.machine) continue;
+    constexpr std::array<const char*, 3> names = {"A", "B", "C"};
+    const bool has = i == 2 || static_cast<Eigen::Index>(i) == tilt_index(*reading_.machine);
+    if (has) reject(names[i], std::nullopt, "deg", "is not known where this line cuts: it went to the machine's own position", "Give the angle by G0 before it");
+  }
   if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero()) remarks_.no_center_point(line_);
 }
 
-void GcodeReader::check_setup(const Line& line) const {
-  const auto reject_of = [&](const auto& said, const char* what, const char* hint) {
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, said.line),
-                                           .field = said.code,
-                                           .rule = fmt::format("{}, and line {} moves", what, line_),
-                                           .hint = hint});
+bool GcodeReader::center_point_lost(const Line& line) const {
+  const bool turned = line.rotary[0] || line.rotary[1] || line.rotary[2] || !rotary_deg_.isZero();
+  return center_point_.value == CenterPoint::off && turned;
+}
+
+std::optional<GcodeReader::Change> GcodeReader::setup_change(const Line& line) const {
+  const auto change = [](const auto& said, const char* what, const char* hint, bool tool = false) {
+    return Change{.line = said.line, .code = said.code, .what = what, .hint = hint, .other_tool = tool};
   };
+  if (center_point_lost(line)) {
+    return change(center_point_, "turns the tool centre point off: positions are the machine's then, not the tip's",
+                  "Let the CAM system write positions of the tip");
+  }
   if (cutting_ && tool_.value != cutting_tool_) {
-    reject_of(tool_, "mounts another tool than the one that has cut, whose length is not known here",
-              "Write a program for each tool");
+    return change(tool_, "mounts another tool than the one that has cut, whose length is not known here",
+                  "Write a program for each tool", true);
   }
   if (cutting_ && length_.value != cutting_length_) {
-    reject_of(length_, "changes the tool's length after moves at feed",
-              "One length holds from the first move at feed on");
+    return change(length_, "changes the tool's length after moves at feed",
+                  "One length holds from the first move at feed on");
   }
-  const bool turned = line.rotary[0] || line.rotary[1] || line.rotary[2] || !rotary_deg_.isZero();
-  if (center_point_.value == CenterPoint::off && turned) {
-    reject_of(center_point_, "turns the tool centre point off: positions are the machine's then, not the tip's",
-              "Let the CAM system write positions of the tip");
-  }
+  return std::nullopt;
 }
 
 }  // namespace robomill::program

@@ -44,7 +44,7 @@ TEST(GcodeMachine, KnowsNoOtherMcode) {
 }
 
 TEST(GcodeMachine, EveryMcodeIsReadOrRejectedWithItsLine) {
-  const std::set<int> read_codes = {0,  1,  2,  3,  4,  5,  7,  8,  9,  10, 11, 12, 19,  30,  31,  33, 34, 35,
+  const std::set<int> read_codes = {0,  1,  2,  3,  4,  5,  7,  8,  9,  10, 11, 12, 19,  29,  30,  31,  33, 34, 35,
                                     40, 41, 42, 43, 44, 45, 48, 49, 51, 52, 53, 62, 63,  64,  65,  67, 68, 70,
                                     71, 73, 74, 76, 77, 80, 81, 83, 84, 88, 89, 99, 128, 129, 428, 429};
   const std::set<int> ends = {2, 30, 99};
@@ -77,11 +77,17 @@ TEST(GcodeMachine, SaysWhatARejectedCodeDoes) {
 
 // All G codes from 0 to 999.9: those that are read, those that move nothing, and every other one rejected.
 TEST(GcodeMachine, EveryGcodeIsReadOrRejectedWithItsLine) {
-  const std::set<int> read_codes = {0,   10,  170, 180, 190, 200, 210, 800, 900, 901, 910, 911, 930, 940, 150,  400,
-                                    490, 500, 610, 611, 640, 690, 921, 922, 970, 980, 990, 430, 434, 435, 2340, 540};
+  std::set<int> read_codes = {0,   10,  170, 180, 190, 200, 210,  800,  900,  901,  910,  911,  930,  940, 150, 400, 490,
+                              500, 610, 611, 640, 690, 921, 922,  970,  980,  990,  430,  434,  435,  90,  131, 220, 230,
+                              250, 281, 301, 401, 501, 620, 630,  670,  1000, 1030, 1130, 1870, 2550, 280, 300, 520, 530,
+                              920, 591, 592, 593, 700, 710, 2340, 2690};
+  for (int code = 540; code <= 590; code += 10) read_codes.insert(code);
+  for (int code = 1100; code <= 1290; code += 10) read_codes.insert(code);
   for (int code = 0; code < 10000; ++code) {
     const std::string text = fmt::format("G0 X0 Y0 Z0\nG{}\nG4 P1\n", 0.1 * code);
-    const std::set<int> need_more = {20, 30, 40};  // arcs' ends, a dwell's time
+    // Arcs' ends, a dwell's time, a frame's number, a hole's depth.
+    const std::set<int> need_more = {20,  30,  40,  100, 541, 1540, 730, 740,
+                                     810, 820, 830, 840, 850, 860,  880, 890};
     if (need_more.contains(code)) continue;
     const std::string said = said_of(text);
     if (read_codes.contains(code)) {
@@ -95,9 +101,9 @@ TEST(GcodeMachine, EveryGcodeIsReadOrRejectedWithItsLine) {
 TEST(GcodeMachine, CodesThatChangeMotionAreNeverSkipped) {
   for (const char* line : {"G43.1 Z5",     "G43.2 H2", "G44 H1",        "G55",      "G59.3",
                            "G54.1 P3",     "G54.2 P1", "G68 X0 Y0 R30", "G68.2 X0", "G51 X2",
-                           "G10 L2 P1 X1", "G92 X0",   "G92.3",         "G52 X1",   "G53 G0 X0",
+                           "G10 L2 P1 X1", "G110",     "G92.3",         "G154 P2",  "G53 G0 X0",
                            "G28",          "G30 Z0",   "G41 D1",        "G42",      "G5 X1 I1 J1 P1 Q1",
-                           "G5.1 Q1",      "G5.2",     "G73 Z-1 R1 Q1", "G76",      "G81 Z-1 R1",
+                           "G5.1 Q1 I1",   "G5.2",     "G73 Z-1 R1",    "G76",      "G81 Z-1",
                            "G82",          "G83",      "G84",           "G85",      "G86",
                            "G87",          "G88",      "G89",           "G65 P1",   "G66 P1",
                            "G16",          "G7",       "G95",           "G96 S100", "G50 X2",
@@ -174,17 +180,19 @@ TEST(GcodeMachine, StopsAreDwellsAfterTheirLine) {
 TEST(GcodeMachine, AnotherToolIsRejectedOnceOneHasCut) {
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nM6\nG1 X1 F60\nM6 T2\nX2\nT3 (made ready)\nX3\nM6\nM30\n"), "");
   expect_rejected(
-      "T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG0 Z5\nM6 T2\nM3\nG0 X5\n",
-      "part:5: M6: mounts another tool than the one that has cut, whose length is not known here, and line 7 "
-      "moves. Write a program for each tool");
+      "T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG0 Z5\nM6 T2\nM3\nG0 X5\nG1 Z0\nX6\nM6\n#1=3\nT3 M6\nX1\nM30\nT4 M6\n",
+      "part:5: M6: mounts another tool than the one that has cut, whose length is not known here, and line 8 "
+      "cuts; the program mounts T1 (line 1), T2 (line 5), T2 (line 10), T3 (line 12). Write a program for each tool");
+  EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nM6 T2\nG0 X5 Y3\nM30\n"), "") << "it does not cut";
   expect_rejected("T1 M6\nG0 X0 Y0 Z0\nG2 X2 I1 F60\nT2\nM16\nG3 X0 I-1\n", "part:5: M6: mounts another tool");
 }
 
 TEST(GcodeMachine, TheToolsLengthHoldsFromTheFirstMoveAtFeed) {
   EXPECT_EQ(said_of("G49\nG0 X0 Y0\nG43 H1 Z5\nG1 X1 F60\nG43 H1 X2\nG49\nM30\n"), "");
   EXPECT_EQ(said_of("G0 X0 Y0 Z0\nG49 G1 X1 F60\nG17 G49 G80\nG1 X2\n"), "") << "no length was on";
-  expect_rejected("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG49\nG0 Z50\n",
-                  "part:3: G49: changes the tool's length after moves at feed, and line 4 moves");
+  expect_rejected("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG49\nG0 Z50\nG1 X2\n",
+                  "part:3: G49: changes the tool's length after moves at feed, and line 5 cuts");
+  EXPECT_EQ(said_of("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG49\nG0 Z50\nM30\n"), "") << "a retract after the last cut";
   expect_rejected("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG43 H21 X2\n", "part:3: G43: changes the tool's length");
   expect_rejected("G0 X0 Y0 Z0\nG1 X1 F60\nG43 H1 Z2\n", "part:3: G43: changes the tool's length");
 }
@@ -198,11 +206,13 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRejected) {
     for (const Skipped& skipped : program.skipped) {
       EXPECT_TRUE(skipped.what == "H1" || skipped.what == "G49") << skipped.what << ": what is obeyed is not skipped";
     }
-    EXPECT_NE(said_of(turned + "G0 Z50\n").find("part:4: "), std::string::npos) << said_of(turned + "G0 Z50\n");
+    const std::string said = said_of(turned + "G0 Z50\nG1 X2\n");
+    EXPECT_NE(said.find("part:4: "), std::string::npos) << said;
+    EXPECT_EQ(said_of(turned + "G0 Z50\nM30\n"), "");
   }
-  expect_rejected("M128\nG0 X0 Y0 Z0 A-30 C5\nM129\nG0 Z50\n",
+  expect_rejected("M128\nG0 X0 Y0 Z0 A-30 C5\nM129\nG1 Z50 F60\n",
                   "part:3: M129: turns the tool centre point off: positions are the machine's then, not the tip's, and "
-                  "line 4 moves");
+                  "line 4 cuts");
   EXPECT_EQ(said_of("M129\nG0 X0 Y0 Z0\nG1 X1 F60\n"), "") << "nothing is turned";
   const Program program = read("G0 X0 Y0 Z0 A0 C0\nG1 X1 F60\nG1 X2 A-30\nG1 X3\n");
   EXPECT_TRUE(program.notes.empty());

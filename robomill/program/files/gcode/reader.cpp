@@ -52,7 +52,9 @@ GcodeReader::Modes GcodeReader::modes() const {
           .centers_absolute = centers_absolute_,
           .feed_in_inches = feed_in_inches_,
           .feed = feed_,
-          .rotary_deg = rotary_deg_};
+          .rotary_deg = rotary_deg_,
+          .origin_m = origin_m().value_or(Eigen::Vector3d::Zero()),
+          .special = special_};
 }
 
 double GcodeReader::unit_m() const {
@@ -74,26 +76,114 @@ ProgramReader::Part GcodeReader::part_of(std::string_view line, char ahead, bool
 void GcodeReader::read(std::string_view statement) {
   if (spindle_after_) spindle_ = *std::exchange(spindle_after_, std::nullopt);
   if (coolant_after_) coolant_ = *std::exchange(coolant_after_, std::nullopt);
+  special_ = false;
+  if (!leaves_out_sub_.empty()) {
+    const std::optional<OWord> control = o_word(words_.compact_line(statement, file_, line_));
+    if (control && control->keyword == "endsub" && control->label == leaves_out_sub_) leaves_out_sub_.clear();
+    return;
+  }
+  if (second_tool_) {
+    list_tools(statement);
+    return;
+  }
   words_.scan(statement, file_, line_);
   if (words_.words().empty()) {
-    if (words_.compact().empty()) return;
-    const char mark = words_.compact().front();
-    if (mark != '%') skip(words_.compact());
-    // What a lone % opens the next one closes.
-    ended_ = words_.compact() == "%" && begun_;
-    begun_ = true;
+    read_wordless();
     return;
   }
   begun_ = true;
   Line line;
   for (const GcodeWords::Word& word : words_.words()) take_word(word, line);
-  set_up(line);
-  if (line.dwells) wait(line);
+  carry_out(line);
+}
+
+void GcodeReader::read_wordless() {
+  const std::string_view compact = words_.compact();
+  if (compact.empty()) return;
+  if (const std::optional<OWord> control_word = o_word(compact)) {
+    control(*control_word);
+    return;
+  }
+  if (compact.front() != '%') skip(compact);
+  const bool deleted = compact.front() == '/' || compact.front() == 'n';
+  if (deleted && !compact.starts_with("//")) remarks_.count(ProgramRemarks::Count::deleted_block, line_);
+  // What a lone % opens the next one closes.
+  ended_ = compact == "%" && begun_;
+  if (ended_ && depth_ > 0) reject({}, std::nullopt, "", "a % ends the program within a subprogram", "Is its M99 missing?");
+  begun_ = true;
+}
+
+void GcodeReader::check_line(const Line& line) const {
+  const auto has = [&](GcodeGroup group) { return (line.groups & static_cast<std::uint32_t>(group)) != 0; };
+  if (line.cycle && has(GcodeGroup::motion)) {
+    reject("G", line.cycle->number, "", "is the second code of motion on this line", "Only one of them can hold");
+  }
+  if (line.e && !(line.special == Special::noted && line.special_code->number == 187.0)) {
+    reject("E", *line.e, "", "is a word not known here", "It is read with G187 alone");
+  }
+  if (!line.other_unit) return;
+  for (const char letter : {'d', 'i', 'j', 'k', 'l', 'p', 'q', 'r'}) {
+    if (!line.has(letter)) continue;
+    reject("G", line.other_unit->number, "", "is a cycle where such words come with it, which is not read",
+           "Write G20 for inches and G21 for mm; let the CAM system write cycles as straight moves");
+  }
+  remarks_.assume({.what = fmt::format("G{:g}", line.other_unit->number),
+                   .taken = inches_ ? "inches, as DIN 66025 and Sinumerik read it" : "mm, as DIN 66025 and Sinumerik read it",
+                   .key = inches_ ? "G20" : "G21"});
+}
+
+void GcodeReader::leave_out_rest(Line& line) const {
   const bool goes_round = motion_ == Motion::clockwise || motion_ == Motion::counterclockwise;
-  if (line.p && !line.dwells && !(goes_round && line.moves())) line.leave_out(*line.p);
+  const bool drills = motion_ == Motion::cycle;
+  const bool own = line.special != Special::none && line.special != Special::noted;
+  if (line.l && !line.call && !own && !drills && !goes_round) line.leave_out(*line.l);
+  if (line.q && !drills && !goes_round) line.leave_out(*line.q);
+  if (line.p && !line.dwells && !line.call && !own && !drills && !(goes_round && line.moves())) line.leave_out(*line.p);
+}
+
+void GcodeReader::carry_out(Line& line) {
+  check_line(line);
+  if (line.cycle_off && (line.groups & static_cast<std::uint32_t>(GcodeGroup::motion)) == 0) motion_ = Motion::none;
+  check_points(line);
+  set_up(line);
+  if (line.system) choose_system(line);
+  if (line.dwells) wait(line);
+  leave_out_rest(line);
   if (!line.left_out.empty()) skip(line.left_out);
   take_feed(line);
-  if (line.moves()) go(line);
+  switch (line.special) {
+    case Special::home:
+      go_home(line);
+      break;
+    case Special::machine:
+      go_to_machine(line);
+      break;
+    case Special::local:
+      set_local(line);
+      break;
+    case Special::shift:
+      shift(line);
+      break;
+    case Special::shift_reset:
+      reset_shift(line);
+      break;
+    case Special::table:
+      set_table(line);
+      break;
+    case Special::noted:
+      special_ = true;
+      check_noted(line);
+      break;
+    case Special::none:
+      if (motion_ == Motion::cycle && !line.dwells) update_cycle(line);
+      if (line.moves() || line.cycle) go(line);
+  }
+  if (start_ && !pending_ && unknown_axis() == nullptr) {
+    const double begin_m = pose_.tip_m.z();
+    highest_m_ = highest_known_ ? std::max(highest_m_, begin_m) : begin_m;
+    highest_known_ = true;
+  }
+  if (line.call) call_program(line);
   if (start_) stop_after_ = line.stop;
   if (!ready_) ready_ = advance();
 }
@@ -108,7 +198,6 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
     case 'y':
     case 'z':
       line.position[letter_index(word.letter) - letter_index('x')] = word.number;
-      remarks_.coordinate(line_, word.text, unit_name());
       return;
     case 'a':
     case 'b':
@@ -150,12 +239,23 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
       line.leave_out(word);
       return;
     case 'd':
-    case 'q':
-    case 'l':
       line.leave_out(word);
+      return;
+    case 'q':
+      line.q = word;
+      return;
+    case 'l':
+      line.l = word;
+      return;
+    case 'e':
+      line.e = word.number;
       return;
     case 'o':
       if (words_.words().size() == 1) {
+        if (start_) {
+          reject("O", word.number, "", "begins another program before this one has ended",
+                 depth_ > 0 ? "Is an M99 missing before it?" : "Is an M2 or M30 missing before it?");
+        }
         line.leave_out(word);
         return;
       }
@@ -164,116 +264,8 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
     default:
       reject(letter_name(word.letter), word.number, "", "is a word not known here",
              line.dwells ? "Is it the time of the dwell? Give that as P, in seconds"
-                         : "Known are A B C D F G H I J K L M N P Q R S T X Y Z");
+                         : "Known are A B C D E F G H I J K L M N O P Q R S T X Y Z");
   }
-}
-
-void GcodeReader::claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const {
-  const auto bit = static_cast<std::uint32_t>(group);
-  if (group != GcodeGroup::other && (line.groups & bit) != 0) {
-    reject("G", word.number, "", "is the second code of its modal group on this line", "Only one of them can hold");
-  }
-  line.groups |= bit;
-}
-
-void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
-  const double tenths = 10.0 * word.number;
-  const double whole = std::round(tenths);
-  if (!(whole >= 0.0 && whole < 10000.0 && std::abs(tenths - whole) < 1e-6)) {
-    reject("G", word.number, "", "is no G code");
-  }
-  const int code = static_cast<int>(whole);
-  if (set_mode(code, word, line)) return;
-  if (code >= 540 && code <= 593) {
-    claim(GcodeGroup::system, word, line);
-    choose_system(code, word);
-  } else {
-    const GcodeGroup* const group = still_gcode(code);
-    if (group == nullptr) {
-      const bool unit = code == 700 || code == 710;
-      reject("G", word.number, "",
-             unit ? "is a unit to some, and not read" : "is not read: it may move the tool or its frame",
-             gcode_hint(code));
-    }
-    claim(*group, word, line);
-    if (*group == GcodeGroup::length) {
-      line.length = word;
-      if (code != 430 && code != 490) return;  // those that turn the tool centre point on are obeyed
-    }
-    line.scaling_off = line.scaling_off || code == 500;
-  }
-  line.leave_out(word);
-}
-
-bool GcodeReader::set_mode(int code, const GcodeWords::Word& word, Line& line) {
-  const auto holds = [&](GcodeGroup group) {
-    claim(group, word, line);
-    return true;
-  };
-  const auto moves = [&](Motion motion) {
-    motion_ = motion;
-    return holds(GcodeGroup::motion);
-  };
-  const auto lies = [&](const Plane& plane) {
-    plane_ = plane;
-    return holds(GcodeGroup::plane);
-  };
-  const auto feeds = [&](FeedMode mode) {
-    if (mode != feed_mode_) feed_.reset();  // F of the other mode means something else
-    feed_mode_ = mode;
-    return holds(GcodeGroup::feed);
-  };
-  switch (code) {
-    case 0:
-      return moves(Motion::rapid);
-    case 10:
-      return moves(Motion::feed);
-    case 20:
-      return moves(Motion::clockwise);
-    case 30:
-      return moves(Motion::counterclockwise);
-    case 40:
-      line.dwells = true;
-      return true;
-    case 170:
-      return lies({});
-    case 180:
-      return lies({.first = 2, .second = 0, .normal = 1, .centers = "K, I", .name = "G18"});
-    case 190:
-      return lies({.first = 1, .second = 2, .normal = 0, .centers = "J, K", .name = "G19"});
-    case 200:
-    case 210:
-      inches_ = code == 200;
-      return holds(GcodeGroup::unit);
-    case 800:
-      line.leave_out(word);
-      return moves(Motion::none);
-    case 900:
-    case 910:
-      incremental_ = code == 910;
-      return holds(GcodeGroup::distance);
-    case 901:
-    case 911:
-      centers_absolute_ = code == 901;
-      return holds(GcodeGroup::center);
-    case 930:
-      return feeds(FeedMode::inverse_time);
-    case 940:
-      return feeds(FeedMode::per_minute);
-    default:
-      return false;
-  }
-}
-
-void GcodeReader::choose_system(int code, const GcodeWords::Word& word) {
-  const bool numbered = code <= 590 ? code % 10 == 0 : true;  // G54 … G59, G59.1 … G59.3
-  if (!numbered) reject("G", word.number, "", "is no G code");
-  const bool moved = known_[0] || known_[1] || known_[2];
-  if (moved && code != system_ && !(system_ == 0 && code == 540)) {
-    reject("G", word.number, "", "changes the coordinate system within the program",
-           "One system holds from the first position on; where another one lies in it is not known here");
-  }
-  system_ = code;
 }
 
 void GcodeReader::take_feed(const Line& line) {
@@ -292,7 +284,7 @@ void GcodeReader::wait(const Line& line) {
            line.feed || line.has('s') ? "F and S are a feed and a speed here" : "");
   }
   constexpr double long_s = 100.0;
-  const double time_s = line.p->number;
+  const double time_s = seconds_of(*line.p, long_s);
   check_dwell("P", time_s, "P counts in seconds here");
   if (!start_ || time_s == 0.0) {
     skip(fmt::format("G4 P{:g}", time_s));
@@ -304,15 +296,22 @@ void GcodeReader::wait(const Line& line) {
 
 Eigen::Vector3d GcodeReader::position_after(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
-  Eigen::Vector3d position = pose_.tip_m;
+  Eigen::Vector3d position = pending_ ? pending_->tip_m : pose_.tip_m;
+  if (!base_ && any(line.position)) {
+    base_ = system_;
+    if (const auto table = tables_m_.find(system_.value); table != tables_m_.end()) base_table_m_ = table->second;
+  }
+  const Eigen::Vector3d origin = origin_m().value_or(Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.position[i]) continue;
     const auto axis = static_cast<Eigen::Index>(i);
     if (incremental_ && !known_[i]) {
+      if (lost_.value && motion_ == Motion::rapid) continue;
+      if (lost_.value) reject_unknown(names[i]);
       reject(names[i], *line.position[i], "", "is a step (G91) from a position that no line has given",
              "Begin with G90 and a G0 to X, Y and Z");
     }
-    position[axis] = *line.position[i] * unit_m() + (incremental_ ? position[axis] : 0.0);
+    position[axis] = *line.position[i] * unit_m() + (incremental_ ? position[axis] : origin[axis]);
     known_[i] = true;
     check_coordinate(names[i], position[axis], *line.position[i], unit_name());
   }
@@ -343,6 +342,10 @@ void GcodeReader::turn_rotary(const Line& line) {
              "Is it the other machine, with A in place of B or B in place of A?");
     }
     const auto axis = static_cast<Eigen::Index>(i);
+    if (incremental_ && lost_rotary_[i]) {
+      reject(names[i], *line.rotary[i], "deg", "is a step (G91) from an angle that is not known here", "Write G90");
+    }
+    lost_rotary_[i] = false;
     rotary_deg_[axis] = *line.rotary[i] + (incremental_ ? rotary_deg_[axis] : 0.0);
     if (!(std::abs(rotary_deg_[axis]) <= 1e6)) {
       reject(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
@@ -363,7 +366,7 @@ Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
            "stand in a program that gives its axis the other way as well", "Use A, B and C or I, J and K");
   }
   if (any(line.vector)) return axis_of_vector(line);
-  if (!any(line.rotary)) return pose_.axis;
+  if (!any(line.rotary)) return pending_ ? pending_->axis : pose_.axis;
   turn_rotary(line);
   return turn_from(rotary_deg_).axis_at(1.0);
 }
@@ -383,11 +386,27 @@ double GcodeReader::feed_duration_s(const Line& line, double length_m, double tu
   return units::minute * turn_deg / *feed_;
 }
 
+void GcodeReader::reject_unknown(const char* axis) const {
+  if (lost_.value) {
+    reject(axis, std::nullopt, "",
+           fmt::format("is not known where this line cuts: {} in line {} left the positions of the program", lost_.code,
+                       lost_.line),
+           "Give X, Y and Z by G0 in G90 before it");
+  }
+  reject(axis, std::nullopt, "",
+         fmt::format("is not known where the first {} begins", motion_ == Motion::feed    ? "move at feed"
+                                                               : motion_ == Motion::cycle ? "drilling cycle"
+                                                                                          : "arc"),
+         "Begin with a G0 to X, Y and Z");
+}
+
 void GcodeReader::go(const Line& line) {
-  check_setup(line);
+  if (motion_ == Motion::none) {
+    reject("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
+  }
+  if (is_elsewhere(line)) return;
   switch (motion_) {
     case Motion::none:
-      reject("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
     case Motion::rapid:
     case Motion::feed:
       go_straight(line);
@@ -395,6 +414,9 @@ void GcodeReader::go(const Line& line) {
     case Motion::clockwise:
     case Motion::counterclockwise:
       go_round(line);
+      return;
+    case Motion::cycle:
+      drill(line);
   }
 }
 
@@ -403,20 +425,24 @@ void GcodeReader::go_straight(const Line& line) {
     reject("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
   }
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
+  if (pending_ && motion_ == Motion::feed) reject_unknown(unknown_axis() == nullptr ? "X, Y, Z" : unknown_axis());
   const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
-  const bool complete = known_[0] && known_[1] && known_[2];
-  if (!complete && motion_ == Motion::feed) {
-    reject(!known_[0]   ? "X"
-           : !known_[1] ? "Y"
-                        : "Z",
-           std::nullopt, "", "is not known where the first move at feed begins", "Begin with a G0 to X, Y and Z");
-  }
-  if (!complete) {
-    pose_ = end;
+  const char* const unknown = unknown_axis();
+  if (unknown != nullptr && motion_ == Motion::feed) reject_unknown(unknown);
+  if (unknown != nullptr) {
+    (pending_ ? *pending_ : pose_) = end;
+    if (!pending_) return;
+    special_ = true;
+    remarks_.count(ProgramRemarks::Count::lost_rapid, line_);
     return;
   }
   if (!start_) {
+    lost_ = {};
     begin_at(end);
+    return;
+  }
+  if (pending_) {
+    come_back(end);
     return;
   }
   PartedMove parted = {.kind = motion_ == Motion::rapid ? Block::Kind::rapid : Block::Kind::feed,

@@ -2,10 +2,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "robomill/program/files/gcode/calls.hpp"
 #include "robomill/program/files/gcode/codes.hpp"
 #include "robomill/program/files/gcode/words.hpp"
 #include "robomill/program/files/program_arc.hpp"
@@ -19,7 +23,7 @@ class GcodeReader final : public ProgramReader {
   using ProgramReader::ProgramReader;
   GcodeReader(const GcodeReader&) = default;
 
-  enum class Motion : std::uint8_t { none, rapid, feed, clockwise, counterclockwise };
+  enum class Motion : std::uint8_t { none, rapid, feed, clockwise, counterclockwise, cycle };
   enum class FeedMode : std::uint8_t { per_minute, inverse_time };
   /// What holds after the lines that have been taken.
   struct Modes {
@@ -29,12 +33,30 @@ class GcodeReader final : public ProgramReader {
     bool feed_in_inches = false;
     std::optional<double> feed = {};                       ///< under G94, a minute
     Eigen::Vector3d rotary_deg = Eigen::Vector3d::Zero();  ///< A, B, C
+    Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();    ///< where X0 Y0 Z0 lies in W
+    bool special = false;  ///< the last line's words of positions are no ends of its move, or it makes no move of them
   };
   [[nodiscard]] Modes modes() const;
+
+  /// Whoever takes calls has the lines of the file; else lines that call are rejected.
+  void allow_calls() { calls_allowed_ = true; }
+  /// How many calls deep the next line is.
+  void set_depth(std::size_t depth) { depth_ = depth; }
+  /// What the last line calls.
+  [[nodiscard]] std::optional<GcodeCall> take_call() { return std::exchange(call_, std::nullopt); }
+  /// Whether the last line ends its subprogram.
+  [[nodiscard]] bool take_return() { return std::exchange(returns_, false); }
 
   [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
 
  private:
+  /// What holds, and which line said so last; 0: none.
+  template <class T>
+  struct Said {
+    T value = {};
+    std::size_t line = 0;
+    std::string code = {};
+  };
   /// The plane of arcs: its axes turn from first to second; normal is the third.
   struct Plane {
     Eigen::Index first = 0, second = 1, normal = 2;
@@ -42,20 +64,35 @@ class GcodeReader final : public ProgramReader {
     const char* name = "G17";
   };
 
+  /// What a line does with its words of positions in place of a move.
+  enum class Special : std::uint8_t {
+    none,
+    home,         ///< G28, G30: by a point to the machine's own position
+    machine,      ///< G53
+    local,        ///< G52
+    shift,        ///< G92
+    shift_reset,  ///< G92.1, G92.2
+    table,        ///< G10
+    noted         ///< a look-ahead or smoothing mode, whose words are no positions
+  };
+
   /// What one line says.
   struct Line {
     std::array<std::optional<double>, 3> position = {};  ///< X, Y, Z in the program's unit
     std::array<std::optional<double>, 3> rotary = {};    ///< A, B, C [deg]
     std::array<std::optional<double>, 3> vector = {};    ///< I, J, K: the tool's axis, or an arc's centre
-    std::optional<double> feed = {}, radius = {};
-    std::optional<GcodeWords::Word> p = {};
+    std::optional<double> feed = {}, radius = {}, e = {};
+    std::optional<GcodeWords::Word> p = {}, q = {}, l = {};
+    Special special = Special::none;
+    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {},
+                                    other_unit = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
     std::optional<double> tool = {}, h = {};
     std::optional<GcodeWords::Word> length = {};  ///< the code of the tool's length
     std::optional<GcodeWords::Word> center_point = {};
     OperatorStop stop = OperatorStop::none;
-    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false;
+    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false, cycle_off = false;
     std::string left_out = {};
     [[nodiscard]] bool has(char letter) const;
     [[nodiscard]] bool moves() const;
@@ -74,17 +111,42 @@ class GcodeReader final : public ProgramReader {
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
 
+  /// A move of a line that makes several.
+  struct Step {
+    Block::Kind kind = Block::Kind::rapid;
+    Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();
+    double duration_s = 0.0;
+    std::optional<Eigen::Vector3d> axis = {};  ///< none: as it stands
+    std::optional<Spindle> spindle = {};       ///< from here on
+    OperatorStop stop = OperatorStop::none;
+  };
+
   void read(std::string_view statement) override;
+  void at_end() override;
   bool advance() override;
+  /// Of a line without words.
+  void read_wordless();
+  void carry_out(Line& line);
+  /// @throws InvalidInput where words of a line do not go together
+  void check_line(const Line& line) const;
+  void leave_out_rest(Line& line) const;
 
   void take_word(const GcodeWords::Word& word, Line& line);
   void take_g(const GcodeWords::Word& word, Line& line);
   /// Whether the code sets a mode that is read here.
   bool set_mode(int code, const GcodeWords::Word& word, Line& line);
+  /// … or a frame, or makes the line's words others than a move's.
+  bool set_frame(int code, const GcodeWords::Word& word, Line& line);
   void claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const;
-  void choose_system(int code, const GcodeWords::Word& word);
+  void make_special(Special special, const GcodeWords::Word& word, Line& line) const;
+  /// @throws InvalidInput unless a noted mode's words are its own
+  void check_noted(const Line& line) const;
+  /// Looks at how positions are written. @throws InvalidInput where that has two meanings
+  void check_points(const Line& line);
   void take_feed(const Line& line);
   void wait(const Line& line);
+  /// A dwell's P. Whole numbers of `least_ms` or more without a point are milliseconds.
+  [[nodiscard]] double seconds_of(const GcodeWords::Word& p, double least_ms);
   [[nodiscard]] Eigen::Vector3d position_after(const Line& line);
   [[nodiscard]] Eigen::Vector3d axis_after(const Line& line);
   [[nodiscard]] Eigen::Vector3d axis_of_vector(const Line& line) const;
@@ -102,19 +164,69 @@ class GcodeReader final : public ProgramReader {
   /// @param field  named where they would be too many
   void split(PartedMove parted, double duration_s, const char* field);
 
+  // frames.cpp
+  void choose_system(const Line& line);
+  /// Where X0 Y0 Z0 lies in W; empty where that is not known.
+  [[nodiscard]] std::optional<Eigen::Vector3d> origin_m() const;
+  void set_local(const Line& line);
+  void shift(const Line& line);
+  void reset_shift(const Line& line);
+  void set_table(const Line& line);
+  void go_home(const Line& line);
+  void go_to_machine(const Line& line);
+  /// The tool's position in an axis is not known from here on.
+  void lose(std::size_t axis, const std::string& code);
+  /// Where positions of the line do not mean what those of the cuts so far mean: rejected at feed, else left out.
+  [[nodiscard]] bool is_elsewhere(const Line& line);
+  /// A rapid after positions that were not known: up, across, down.
+  void come_back(const Pose& end);
+  void begin_steps();
+  bool take_step();
+  [[nodiscard]] const char* unknown_axis() const;
+  [[noreturn]] void reject_unknown(const char* axis) const;
+
+  // cycles.cpp
+  void choose_cycle(int code, const GcodeWords::Word& word, Line& line);
+  void update_cycle(const Line& line);
+  void drill(const Line& line);
+  /// @param hole_m  X and Y
+  void drill_hole(const Eigen::Vector3d& hole_m, const Line& line);
+  void peck(const Eigen::Vector3d& hole_m, const Line& line);
+  /// Adds a move, with the time of one at feed, where it moves.
+  void step(Step wanted, const Line& line);
+  [[nodiscard]] std::size_t repeats_of(const Line& line) const;
+
+  // calls.cpp
+  void call_program(const Line& line);
+  void control(const OWord& word);
+
   // gcode_machine.cpp
   void take_m(const GcodeWords::Word& word, Line& line);
   void set_up(const Line& line);
   void set_length(const GcodeWords::Word& word, const Line& line);
-  /// @throws InvalidInput where the line's positions do not mean what those of the first move at feed meant
-  void check_setup(const Line& line) const;
+  /// What the positions rest on that is no more what it was at the first move at feed.
+  struct Change {
+    std::size_t line = 0;
+    std::string code = {}, what = {}, hint = {};
+    bool other_tool = false;
+  };
+  [[nodiscard]] std::optional<Change> setup_change(const Line& line) const;
+  [[nodiscard]] bool center_point_lost(const Line& line) const;
+  [[noreturn]] void reject_change(const Change& change) const;
+  void mount(double number);
+  void list_tools(std::string_view statement);
   void begin_cutting();
 
   void go_round(const Line& line);  // gcode_arcs.cpp
   [[nodiscard]] Eigen::Vector2d center_of_words(const Line& line, const Eigen::Vector2d& from) const;
   [[nodiscard]] Eigen::Vector2d center_of_radius(const Line& line, const Eigen::Vector2d& from,
                                                  const Eigen::Vector2d& to) const;
+  /// LinuxCNC's.
+  [[nodiscard]] double strict_radius_error_m(double radius_m) const;
+  /// … or what the program's digits make.
   [[nodiscard]] double allowed_radius_error_m(double radius_m) const;
+  [[nodiscard]] double rounding_m() const;
+  void note_rounding(const Arc& arc, double chord_m, double strict_m) const;
   [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_m) const;
   [[nodiscard]] double turns_of(const Line& line) const;
 
@@ -125,27 +237,61 @@ class GcodeReader final : public ProgramReader {
   FeedMode feed_mode_ = FeedMode::per_minute;
   bool inches_ = false, incremental_ = false, centers_absolute_ = false;
   Plane plane_;
-  int system_ = 0;              ///< coordinate system named so far; 0: none
   std::optional<double> feed_;  ///< under G94, in the unit of the line that said it per minute
   bool feed_in_inches_ = false;
 
-  std::array<bool, 3> known_ = {};  ///< X, Y, Z
+  std::array<bool, 3> known_ = {};     ///< X, Y, Z
+  int decimals_ = 0;                   ///< of a position's word, at most
+  double highest_m_ = 0.0;             ///< that the tool was in W at the end of a line …
+  bool highest_known_ = false;         ///< … if one has come
+  Said<bool> lost_;                    ///< what made positions unknown
+  std::optional<Pose> pending_;        ///< where it is as far as that is known, while no blocks come
+  std::array<bool, 3> lost_rotary_ = {};
+  bool special_ = false;  ///< Modes::special
   Eigen::Vector3d rotary_deg_ = Eigen::Vector3d::Zero();
   bool by_rotary_ = false, by_vector_ = false;  ///< how this program gives its axis
 
-  /// What the positions rest on, and which line said so last; 0: none.
-  template <class T>
-  struct Said {
-    T value = {};
-    std::size_t line = 0;
-    std::string code = {};
+  /// Work frames. A system is its G code in tenths, extended ones count from 100,000.
+  static constexpr int first_system = 540;
+  Said<int> system_ = {.value = first_system};
+  std::optional<Said<int>> base_;  ///< the one that W is: of the first position
+  std::map<int, Eigen::Vector3d> tables_m_;
+  std::optional<Eigen::Vector3d> base_table_m_;
+  Eigen::Vector3d local_m_ = Eigen::Vector3d::Zero(), shift_m_ = Eigen::Vector3d::Zero();
+  bool shift_declared_ = false;  ///< G92 said where the tool stands, and no line before it
+  Said<bool> shift_lost_;
+
+  struct Cycle {
+    int code = 0;  ///< in tenths; 0: none
+    std::optional<double> r, z, q;
+    double dwell_s = 0.0, initial_m = 0.0;
+    bool to_r = false;  ///< G99
   };
+  Cycle cycle_;
+  std::vector<Step> steps_;
+  std::size_t next_step_ = 0;
+
+  bool calls_allowed_ = false, returns_ = false;
+  std::size_t depth_ = 0;
+  std::optional<GcodeCall> call_;
+  std::string leaves_out_sub_;  ///< its label, while its lines are passed
+  std::size_t sub_line_ = 0;
+
   enum class CenterPoint { not_said, on, on_by_length, off };
   std::optional<double> prepared_tool_;
   Said<std::optional<double>> tool_;    ///< that M6 has mounted; −1: without a T
   Said<std::optional<double>> length_;  ///< H of G43; none: off. The tool's own counts as −1
   Said<CenterPoint> center_point_;
   bool cutting_ = false;  ///< a move at feed has come
+  std::size_t cutting_line_ = 0;
+  struct Mounted {
+    double number;
+    std::size_t line;
+  };
+  std::vector<Mounted> mounted_;  ///< tools, by M6
+  std::size_t mounted_count_ = 0;
+  std::optional<Change> second_tool_;  ///< that cuts: from here on tools alone are looked at
+  std::size_t second_tool_line_ = 0;
   std::optional<double> cutting_tool_, cutting_length_;
 
   std::optional<Spindle> spindle_after_;  ///< of the line that was read last

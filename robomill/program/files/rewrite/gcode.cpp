@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -34,6 +35,7 @@ const char* motion_number(GcodeReader::Motion motion) {
       return "3";
     case GcodeReader::Motion::feed:
       return "1";
+    case GcodeReader::Motion::cycle:
     case GcodeReader::Motion::rapid:
     case GcodeReader::Motion::none:
       break;
@@ -101,9 +103,12 @@ void GcodeRewriter::note(Statement& statement) {
   statement.says_feed = modal && find('f') != nullptr;
   statement.breaks_feed = after.feed_mode != before.feed_mode;
   const Move move = move_of(statement);
-  if (move.count == 0 || !move.at_feed) return;
+  const std::span<const Block> blocks = std::span(job().as_read.blocks).subspan(statement.first_block, statement.blocks);
+  const auto feeds = [](const Block& block) { return block.kind == Block::Kind::feed; };
+  if (!(after.special ? std::ranges::any_of(blocks, feeds) : move.count > 0 && move.at_feed)) return;
   statement.moves_at_feed = modal;
-  statement.round = after.motion == Motion::clockwise || after.motion == Motion::counterclockwise;
+  // A drilling cycle's moves have one F too.
+  statement.round = after.motion == Motion::clockwise || after.motion == Motion::counterclockwise || after.special;
   if (modal) {
     statement.per_minute = per_minute(*after.feed, after.feed_in_inches, !statement.round && move.read_way_m == 0.0);
   }
@@ -209,8 +214,9 @@ Vector3d GcodeRewriter::set_ends(std::size_t index, const Move& move, Composed& 
     const bool stays = !statement.starts && (move.count == 0 || !moved);
     const Word* const word = find(axis_letters[i]);
     const double target_m = statement.starts ? job().wanted.start.tip_m[axis] : move.count > 0 ? move.end_m[axis] : 0.0;
+    const double origin_m = modes.origin_m[axis];
     const Coordinate to = coordinate(word != nullptr ? std::optional(word->number) : std::nullopt, target_m,
-                                     from_m[axis], modes.incremental, position_digits(unit_m), stays);
+                                     from_m[axis], modes.incremental, position_digits(unit_m), stays, origin_m);
     end_m[axis] = to.end;
     if (to.act == Coordinate::Act::keep) continue;
     if (word == nullptr) {
@@ -230,6 +236,7 @@ void GcodeRewriter::set_centers(std::size_t index, const Vector3d& offset_m, Com
   for (std::size_t i = 0; modes.centers_absolute && i < 3; ++i) {
     const Word* const word = find(center_letters[i]);
     if (word == nullptr) continue;
+    // Both count from the frame's origin.
     const Coordinate to = coordinate(word->number, word->number * unit_m + offset_m[static_cast<Eigen::Index>(i)], 0.0,
                                      false, position_digits(unit_m), false);
     if (to.act != Coordinate::Act::keep) set_number(statements()[index], *word, to.text, composed);
@@ -362,10 +369,45 @@ Rewriter::Composed GcodeRewriter::compose_parted(std::size_t index, const Move& 
   return split(index, pieces_of(index, move));
 }
 
+// Its positions stay: what a machine makes of them is not said by their words alone.
+Rewriter::Composed GcodeRewriter::compose_special(std::size_t index) const {
+  const Statement& statement = statements()[index];
+  const Program& read = job().as_read;
+  bool same = stand_as_read(index);
+  for (std::size_t i = statement.first_block; i < statement.first_block + statement.blocks; ++i) {
+    const Pose& end = job().wanted.blocks[i].end;
+    same = same && (end.tip_m - read.blocks[i].end.tip_m).norm() <= 1e-10 && same_axis(end.axis, read.blocks[i].end.axis);
+  }
+  if (!same && statement.blocks > 0) {
+    reject(statement.line, "tip",
+           "cannot be moved where a line drills by a cycle or brings the tool back from the machine's own position",
+           "Let the CAM system write its moves as G0 and G1");
+  }
+  Composed composed;
+  if (statement.round) check_cycle_feed(statement);
+  set_speed(index, composed);
+  if (statement.round || statement.says_feed) set_feed(index, {}, composed);
+  return composed;
+}
+
+void GcodeRewriter::check_cycle_feed(const Statement& statement) const {
+  std::optional<double> ratio;
+  for (std::size_t i = statement.first_block; i < statement.first_block + statement.blocks; ++i) {
+    const Block& block = job().as_read.blocks[i];
+    if (block.kind != Block::Kind::feed) continue;
+    const double this_ratio = job().wanted.blocks[i].duration_s / block.duration_s;
+    if (!ratio) ratio = this_ratio;
+    if (same_rate(this_ratio, *ratio)) continue;
+    reject(statement.line, "feed", "must be one for all moves of the drilling cycle that this line says",
+           "The line has one F");
+  }
+}
+
 Rewriter::Composed GcodeRewriter::compose(std::size_t index) {
   const Statement& statement = statements()[index];
   scan(statement);
   if (words_.empty()) return {};
+  if (modes_[index].special) return compose_special(index);
   const Move move = move_of(statement);
   if (move.count > 1 || statement.round) return compose_parted(index, move);
   if (move.count == 1 && move.at_feed && axes_changed(index)) {

@@ -69,6 +69,10 @@ class GcodeRewriter final : public Rewriter {
   /// @param word  whose number it replaces; null: a new one's
   [[nodiscard]] std::string feed_text(double per_minute, bool inches, bool degrees, const Word* word) const;
 
+  /// A line whose words of positions are no ends of its move.
+  [[nodiscard]] Composed compose_special(std::size_t index) const;
+  /// @throws InvalidInput where the moves of a drilling cycle ask for several feeds
+  void check_cycle_feed(const Statement& statement) const;
   Composed compose_parted(std::size_t index, const Move& move);
   /// Whether one line can say where the tips of a move's parts end.
   [[nodiscard]] bool parts_fit(const Statement& statement, const Move& move) const;

@@ -66,8 +66,9 @@ void GcodeRewriter::split_tip(std::size_t index, const Piece& piece, Running& ru
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const Word* const word = line.first ? find(position_letters[i]) : nullptr;
+    const double origin_m = modes.origin_m[axis];
     const Coordinate to = coordinate(word != nullptr ? std::optional(word->number) : std::nullopt, target_m[axis],
-                                     running.tip_m[axis], modes.incremental, digits, false);
+                                     running.tip_m[axis], modes.incremental, digits, false, origin_m);
     running.tip_m[axis] = to.end;
     if (to.act != Coordinate::Act::keep) say(statements()[index], position_letters[i], to.text, line, composed);
   }

@@ -10,6 +10,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/program/files/program_lines.hpp"
 
 namespace robomill::program {
 namespace {
@@ -23,11 +24,8 @@ struct TextLine {
 };
 
 TextLine line_at(std::string_view text, std::size_t begin) {
-  const std::size_t end = text.find('\n', begin);
-  const std::size_t next = end == std::string_view::npos ? text.size() : end + 1;
-  std::string_view line = text.substr(begin, std::min(end, text.size()) - begin);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return {.text = line, .next = next};
+  const LineEnd end = line_end(text.substr(begin));
+  return {.text = text.substr(begin, end.at), .next = begin + end.at + end.bytes};
 }
 
 char letter_ahead(std::string_view text, std::size_t begin) {
@@ -38,6 +36,7 @@ char letter_ahead(std::string_view text, std::size_t begin) {
 /// The line's end at the end of a text; empty where there is none.
 std::string_view ending_of(std::string_view text) {
   if (text.ends_with("\r\n")) return "\r\n";
+  if (text.ends_with('\r')) return "\r";
   return text.ends_with('\n') ? "\n" : "";
 }
 
@@ -87,9 +86,7 @@ void Rewriter::check_read(std::size_t index, const Block& block) const {
 void Rewriter::read_statements() {
   const std::string_view text = job_.text;
   head_ = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-  if (const std::size_t end = text.find('\n'); end != std::string_view::npos) {
-    line_end_ = ending_of(text.substr(0, end + 1));
-  }
+  if (const LineEnd end = line_end(text); end.bytes > 0) line_end_ = text.substr(end.at, end.bytes);
   std::size_t blocks = 0;
   std::size_t line = 0;
   Block block;
@@ -265,8 +262,8 @@ Rewriter::Digits Rewriter::position_digits(double unit_m) const {
 }
 
 Rewriter::Coordinate Rewriter::coordinate(std::optional<double> number, double target, double from, bool step,
-                                          const Digits& digits, bool stays) const {
-  const double base = step ? from : 0.0;
+                                          const Digits& digits, bool stays, double origin) const {
+  const double base = step ? from : origin;
   const double kept = number ? *number * digits.unit + base : from;
   constexpr double half = 0.5001;
   if (stays ? kept == from : std::abs(kept - target) <= half * digits.resolution()) return {.end = kept};

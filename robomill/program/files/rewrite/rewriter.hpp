@@ -170,8 +170,9 @@ class Rewriter {
   /// @param from    where the tip or the angle is
   /// @param step    the number counts from there
   /// @param stays   it must not change at all
+  /// @param origin  the number counts from there where it is no step
   [[nodiscard]] Coordinate coordinate(std::optional<double> number, double target, double from, bool step,
-                                      const Digits& digits, bool stays) const;
+                                      const Digits& digits, bool stays, double origin = 0.0) const;
   /// Of positions: 0.1 um, or as the program writes itself.
   [[nodiscard]] Digits position_digits(double unit_m) const;
   /// @param numbers  that stand in the statement, if they do
