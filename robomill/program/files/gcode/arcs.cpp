@@ -114,14 +114,14 @@ double GcodeReader::strict_radius_error_m(double radius_m) const {
 }
 
 double GcodeReader::allowed_radius_error_m(double radius_m) const {
-  return std::max(strict_radius_error_m(radius_m), rounding_m());
+  // Two decimals of mm, three of inches: fewer have dropped their zeros.
+  const double digits_m = fixed_decimals_ == (inches_ ? 3 : 2) ? rounding_m(fixed_decimals_) : 0.0;
+  return std::max(strict_radius_error_m(radius_m), digits_m);
 }
 
-// Of an arc's radius by the digits of its begin, end and centre: half a last digit each way, of three points. A
-// program that has written fewer decimals may have dropped zeros.
-double GcodeReader::rounding_m() const {
-  const int least = inches_ ? 3 : 2;
-  return 2.2 * std::pow(10.0, -std::max(decimals_, least)) * unit_m();
+// Half a last digit each way of three points: begin, end and centre.
+double GcodeReader::rounding_m(int decimals) const {
+  return 2.2 * std::pow(10.0, -decimals) * unit_m();
 }
 
 void GcodeReader::note_rounding(const Arc& arc, double chord_m, double strict_m) const {
@@ -129,7 +129,7 @@ void GcodeReader::note_rounding(const Arc& arc, double chord_m, double strict_m)
   const double error_m = std::abs(arc.end_radius_m - arc.begin_radius_m);
   if (error_m > strict_m) remarks_.count(Count::rounded_radius, line_, error_m / units::mm);
   constexpr double small = 3.0;
-  const bool short_chord = chord_m > same_place_m && chord_m <= rounding_m();
+  const bool short_chord = chord_m > same_place_m && chord_m <= rounding_m(std::max(decimals_, inches_ ? 3 : 2));
   if (!short_chord || arc.begin_radius_m < small * chord_m) return;
   remarks_.count(arc.sweep_rad > std::numbers::pi ? Count::almost_whole : Count::almost_nothing, line_);
 }

@@ -33,6 +33,13 @@ const char* GcodeReader::unknown_axis() const {
   return nullptr;
 }
 
+// G54 P3 is G54.1 P3 where no other code takes the P.
+bool GcodeReader::is_frame_number(const Line& line) const {
+  const bool other = line.dwells || line.call || line.special != Special::none || line.cycle ||
+                     (line.groups & static_cast<std::uint32_t>(GcodeGroup::path)) != 0;
+  return line.p && !other && motion_ != Motion::clockwise && motion_ != Motion::counterclockwise;
+}
+
 void GcodeReader::choose_system(const Line& line) {
   const GcodeWords::Word& word = *line.system;
   const int code = static_cast<int>(std::round(10.0 * word.number));
@@ -41,7 +48,7 @@ void GcodeReader::choose_system(const Line& line) {
   if (code >= 1100 && code <= 1290) {
     if (code % 10 != 0) reject("G", word.number, "", "is no G code");
     id = extended + code / 10 - 109;  // Haas: G110 is G154 P1
-  } else if (code == 541 || code == 1540 || (code == 540 && line.p && !line.dwells && !line.call)) {
+  } else if (code == 541 || code == 1540 || (code == 540 && is_frame_number(line))) {
     constexpr double most = 300.0;
     const double number = line.p ? line.p->number : 0.0;
     if (!(number >= 1.0 && number <= most && number == std::round(number))) {

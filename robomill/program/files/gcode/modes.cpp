@@ -204,16 +204,21 @@ void GcodeReader::check_noted(const Line& line) const {
 void GcodeReader::check_points(const Line& line) {
   const bool arc = motion_ == Motion::clockwise || motion_ == Motion::counterclockwise;
   const std::string_view letters = arc ? "xyzijkr" : motion_ == Motion::cycle ? "xyzrq" : "xyz";
-  if (line.special == Special::noted) return;
+  // A retract's zeros say little of how positions are written.
+  if (line.special == Special::noted || line.special == Special::home || line.special == Special::machine) return;
   constexpr int most = 9;
+  int fewest = most;
+  int largest = 0;
   for (const GcodeWords::Word& word : words_.words()) {
     if (letters.find(word.letter) == std::string_view::npos) continue;
     remarks_.coordinate(line_, word.text, unit_name());
     const std::size_t point = word.text.find('.');
-    if (point != std::string_view::npos) {
-      decimals_ = std::max(decimals_, std::min(most, static_cast<int>(word.text.size() - point - 1)));
-    }
+    const int decimals = point == std::string_view::npos ? 0 : static_cast<int>(word.text.size() - point - 1);
+    fewest = std::min(fewest, decimals);
+    largest = std::max(largest, std::min(most, decimals));
   }
+  decimals_ = std::max(decimals_, largest);
+  fixed_decimals_ = fewest == largest ? fewest : most;
   // LinuxCNC and GRBL, whose endings these are, count whole units.
   const std::string_view file = file_;
   if (file.ends_with(".ngc") || file.ends_with(".gcode")) return;

@@ -166,6 +166,7 @@ class GcodeReader final : public ProgramReader {
 
   // frames.cpp
   void choose_system(const Line& line);
+  [[nodiscard]] bool is_frame_number(const Line& line) const;
   /// Where X0 Y0 Z0 lies in W; empty where that is not known.
   [[nodiscard]] std::optional<Eigen::Vector3d> origin_m() const;
   void set_local(const Line& line);
@@ -225,7 +226,8 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] double strict_radius_error_m(double radius_m) const;
   /// … or what the program's digits make.
   [[nodiscard]] double allowed_radius_error_m(double radius_m) const;
-  [[nodiscard]] double rounding_m() const;
+  /// Of an arc's radius where its line has so many decimals.
+  [[nodiscard]] double rounding_m(int decimals) const;
   void note_rounding(const Arc& arc, double chord_m, double strict_m) const;
   [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_m) const;
   [[nodiscard]] double turns_of(const Line& line) const;
@@ -242,6 +244,7 @@ class GcodeReader final : public ProgramReader {
 
   std::array<bool, 3> known_ = {};     ///< X, Y, Z
   int decimals_ = 0;                   ///< of a position's word, at most
+  int fixed_decimals_ = 9;             ///< that each position's word of the line has; 9: not alike
   double highest_m_ = 0.0;             ///< that the tool was in W at the end of a line …
   bool highest_known_ = false;         ///< … if one has come
   Said<bool> lost_;                    ///< what made positions unknown

@@ -92,7 +92,7 @@ void GcodeRewriter::note(Statement& statement) {
   if (in_head_ && !compact.empty()) header_place_ = modes_.size();
   for (const Word& word : words_) {
     const bool point = word.text.find('.') != std::string_view::npos;
-    if (word.letter >= 'x' && word.letter <= 'z') note_position(word.text.substr(1));
+    if (word.letter >= 'x' && word.letter <= 'z' && !after.special) note_position(word.text.substr(1));
     if (word.letter == 'f') points_.feed = points_.feed || point;
     if (word.letter == 's') points_.speed = points_.speed || point;
   }

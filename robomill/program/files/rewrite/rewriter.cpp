@@ -247,8 +247,13 @@ double Rewriter::wanted_rpm(std::size_t block) const {
 void Rewriter::note_position(std::string_view number) {
   constexpr int most = 9;
   const std::size_t point = number.find('.');
-  if (point == std::string_view::npos) return;
-  points_.position = true;
+  if (point == std::string_view::npos) {
+    whole_positions_ = whole_positions_ || number.find_first_of("123456789") != std::string_view::npos;
+    points_.position = points_.position && !whole_positions_;
+    return;
+  }
+  // Beside whole numbers without a point, new ones with it could mean other units.
+  points_.position = !whole_positions_;
   const auto digits = static_cast<int>(number.size() - point - 1);
   position_decimals_ = std::max(position_decimals_, std::min(digits, most));
 }

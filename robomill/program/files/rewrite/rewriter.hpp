@@ -204,6 +204,7 @@ class Rewriter {
   std::string joined_;
   std::vector<Segment> segments_;
   int position_decimals_ = 0;
+  bool whole_positions_ = false;  ///< written without a point
 };
 
 [[nodiscard]] std::unique_ptr<Rewriter> make_gcode_rewriter(const RewriteJob& job);
