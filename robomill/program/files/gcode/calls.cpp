@@ -71,7 +71,8 @@ void GcodeCalls::load() {
   while (lines.next(line)) {
     if (text_.size() + line.size() > most_bytes) {
       reject(file_, lines.number(),
-             fmt::format("lies beyond the first {} MB of a program that calls subprograms", most_bytes >> 20U), write_out);
+             fmt::format("lies beyond the first {} MB of a program that calls subprograms", most_bytes >> 20U),
+             write_out);
     }
     text_ += line;
     begins_.push_back(text_.size());
@@ -100,7 +101,8 @@ std::size_t GcodeCalls::line_of(const GcodeCall& call) const {
   const std::size_t first = behind == program_begins_.begin() ? 0 : *(behind - 1);
   const std::size_t last = behind == program_begins_.end() ? begins_.size() : *behind;
   const auto [begin, end] = numbers_.equal_range(call.label);
-  const auto found = std::find_if(begin, end, [&](const auto& entry) { return entry.second >= first && entry.second < last; });
+  const auto found =
+      std::find_if(begin, end, [&](const auto& entry) { return entry.second >= first && entry.second < last; });
   if (found != end) return found->second;
   reject(file_, call.line, fmt::format("calls N{}, which this program does not contain", call.label), write_out);
 }
@@ -173,7 +175,8 @@ void GcodeCalls::rewind() {
 
 void GcodeReader::call_program(const Line& line) {
   const double code = line.call->number;
-  const auto whole = [&](const std::optional<GcodeWords::Word>& word, double otherwise, double most, const char* field) {
+  const auto whole = [&](const std::optional<GcodeWords::Word>& word, double otherwise, double most,
+                         const char* field) {
     const double number = word ? word->number : otherwise;
     if (number >= 1.0 && number <= most && number == std::round(number)) return static_cast<std::size_t>(number);
     reject(field, word ? std::optional(number) : std::nullopt, "",
@@ -202,8 +205,8 @@ void GcodeReader::control(const OWord& word) {
     call_ = GcodeCall{.kind = GcodeCall::Kind::label, .label = std::string(word.label), .line = line_};
   } else {
     reject(fmt::format("\"{}\"", printable(said, 40)), std::nullopt, "",
-           word.keyword == "call"  ? "is a subroutine or its control, which are not read here: it passes arguments"
-                                   : "is a subroutine or its control, which are not read here",
+           word.keyword == "call" ? "is a subroutine or its control, which are not read here: it passes arguments"
+                                  : "is a subroutine or its control, which are not read here",
            "Let the CAM system write the program out");
   }
 }

@@ -27,11 +27,11 @@ std::vector<std::string> moves_of(const std::string& text) {
   std::vector<std::string> out;
   for (const Block& block : read(head + text).blocks) {
     const Vector3d mm = 1e3 * block.end.tip_m;
-    out.push_back(block.kind == Block::Kind::dwell ? fmt::format("d {:g}", block.duration_s)
-                                                   : fmt::format("{} {:g},{:g},{:g}",
-                                                                 block.kind == Block::Kind::feed ? 'f' : 'r',
-                                                                 std::round(1e6 * mm.x()) / 1e6, std::round(1e6 * mm.y()) / 1e6,
-                                                                 std::round(1e6 * mm.z()) / 1e6));
+    out.push_back(block.kind == Block::Kind::dwell
+                      ? fmt::format("d {:g}", block.duration_s)
+                      : fmt::format("{} {:g},{:g},{:g}", block.kind == Block::Kind::feed ? 'f' : 'r',
+                                    std::round(1e6 * mm.x()) / 1e6, std::round(1e6 * mm.y()) / 1e6,
+                                    std::round(1e6 * mm.z()) / 1e6));
   }
   return out;
 }
@@ -39,8 +39,8 @@ std::vector<std::string> moves_of(const std::string& text) {
 using Moves = std::vector<std::string>;
 
 TEST(GcodeCycles, MakeTheirMoves) {
-  EXPECT_EQ(moves_of("G81 X10 Z-5 R2 F60\nY4\nG80\n"),
-            (Moves{"r 10,0,20", "r 10,0,2", "f 10,0,-5", "r 10,0,20", "r 10,4,20", "r 10,4,2", "f 10,4,-5", "r 10,4,20"}));
+  EXPECT_EQ(moves_of("G81 X10 Z-5 R2 F60\nY4\nG80\n"), (Moves{"r 10,0,20", "r 10,0,2", "f 10,0,-5", "r 10,0,20",
+                                                              "r 10,4,20", "r 10,4,2", "f 10,4,-5", "r 10,4,20"}));
   EXPECT_EQ(moves_of("G99 G82 X10 Z-5 R2 P500 F60\nG98 Y4 P.25\n"),
             (Moves{"r 10,0,20", "r 10,0,2", "f 10,0,-5", "d 0.5", "r 10,0,2", "r 10,4,2", "f 10,4,-5", "d 0.25",
                    "r 10,4,20"}));

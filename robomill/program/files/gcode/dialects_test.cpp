@@ -51,8 +51,8 @@ double feed_length_mm(const Program& program) {
 const std::string head = "G21 G90\nG0 X0 Y0 Z5\nG1 Z-1 F60\nX10\n";
 
 TEST(GcodeDialects, ARetractAfterTheLastCutEndsNoProgram) {
-  for (const char* retract : {"G91 G28 Z0.", "G28 G91 Z0.\nG28 X0 Y0\nG90", "G53 G0 Z0.", "G0 G53 Z0 X-300.", "G30 P2 Z5",
-                              "G28", "G49 G0 Z300", "T2 M6\nG0 X3", "G54.1 P7\nG0 X0 Y0", "M99"}) {
+  for (const char* retract : {"G91 G28 Z0.", "G28 G91 Z0.\nG28 X0 Y0\nG90", "G53 G0 Z0.", "G0 G53 Z0 X-300.",
+                              "G30 P2 Z5", "G28", "G49 G0 Z300", "T2 M6\nG0 X3", "G54.1 P7\nG0 X0 Y0", "M99"}) {
     const Program program = read(head + retract + "\nM30\n");
     EXPECT_NEAR(feed_length_mm(program), 16.0, 1e-9) << retract;
   }
@@ -101,15 +101,18 @@ TEST(GcodeDialects, FramesMoveThePositions) {
   expect_end(read(tables + "G54 G0 X0 Y0 Z0\nG1 X1 F60\nG56\nG1 X1 Y0 Z0\n"), {31, -5, 2});
   expect_end(read(tables + "G56 G0 X0 Y0 Z0\nG1 X1 F60\nG54\nG1 X1 Y0 Z0\n"), {-29, 5, -2});
   expect_end(read("G54.1 P3\nG0 X0 Y0 Z0\nG1 X1 F60\n"), {1, 0, 0});
-  expect_said("G54\nG0 X0 Y0 Z0\nG1 X1 F60\nG55\nG0 X3\nG1 X1\n",
-              "part.nc:4: G55: is another work frame than G54 of the positions before (line 1); where the one lies in the "
-              "other is not known here, and line 6 cuts. Write a program for each frame, or give both by G10 L2");
-  expect_said("G92 X0 Y0 Z10\nG1 X1 F60\nG92.1\nX2\n", "part.nc:3: G92.1: moves the program's frame by a position that");
+  expect_said(
+      "G54\nG0 X0 Y0 Z0\nG1 X1 F60\nG55\nG0 X3\nG1 X1\n",
+      "part.nc:4: G55: is another work frame than G54 of the positions before (line 1); where the one lies in the "
+      "other is not known here, and line 6 cuts. Write a program for each frame, or give both by G10 L2");
+  expect_said("G92 X0 Y0 Z10\nG1 X1 F60\nG92.1\nX2\n",
+              "part.nc:3: G92.1: moves the program's frame by a position that");
 }
 
 TEST(GcodeDialects, SubprogramsOfTheFileAreCarriedOut) {
   const std::string text =
-      "G21 G90 G17\nG0 Z25\nS7500 M3\nG52 X0 Y0\nM98 P70\nG52 X60 Y0\nM98 P70 L2\nM30\nO70\nG0 X10 Y12 Z25\nG1 Z-2 F700\n"
+      "G21 G90 G17\nG0 Z25\nS7500 M3\nG52 X0 Y0\nM98 P70\nG52 X60 Y0\nM98 P70 L2\nM30\nO70\nG0 X10 Y12 Z25\nG1 Z-2 "
+      "F700\n"
       "G0 Z25\nM97 P5\nM99\nN5 G1 Z20\nG0 Z25\nM99\n";
   const Program program = read(text);
   expect_end(program, {70, 12, 25});
@@ -149,8 +152,9 @@ TEST(GcodeDialects, SubprogramsAreReadAgainAfterRewinding) {
 
 TEST(GcodeDialects, NumbersWithTwoMeaningsAreRejected) {
   const std::string text = "G0 X0 Y0 Z50.\nG1 Z-1.5 F300\nX80\n";
-  expect_said(text, "part.nc:3: X80: has no point, and Z50. in line 1 has one: it is 80 mm, or 0.08 mm on controls that "
-                    "count the smallest step (Fanuc, Haas). Write X80. or X0.08");
+  expect_said(text,
+              "part.nc:3: X80: has no point, and Z50. in line 1 has one: it is 80 mm, or 0.08 mm on controls that "
+              "count the smallest step (Fanuc, Haas). Write X80. or X0.08");
   EXPECT_EQ(read(text, "part.ngc").assumed.size(), 1U) << "LinuxCNC counts mm";
   EXPECT_EQ(said_of("G0 X0 Y0 Z0\nG1 X8 F60\nX1.5\nX7.250\n"), "") << "zeros are left out";
   expect_said("G20 G0 X0 Y0 Z5.\nG1 X3 F9\n", "it is 3 in, or 0.0003 in on controls");
@@ -158,7 +162,8 @@ TEST(GcodeDialects, NumbersWithTwoMeaningsAreRejected) {
 
 TEST(GcodeDialects, ArcsThatRoundingMakesAreNoted) {
   const std::string start = "G0 X30.000 Y10.000 Z0\n";
-  EXPECT_NE(read(start + "G2 X30.000 Y9.999 I5.000 J0.001 F60\n").notes.at(0).find("almost a whole turn"), std::string::npos);
+  EXPECT_NE(read(start + "G2 X30.000 Y9.999 I5.000 J0.001 F60\n").notes.at(0).find("almost a whole turn"),
+            std::string::npos);
   EXPECT_NE(read(start + "G3 X30.001 Y10 I0 J5.000 F60\n").notes.at(0).find("almost nothing"), std::string::npos);
   EXPECT_TRUE(read(start + "G3 X30 Y10 I0 J5.000 F60\n").notes.empty()) << "a whole circle";
   const Program rounded = read("G0 X-1.55 Y-4.76 Z0\nG3 X-1.60 Y-4.79 I-0.03 J0.01 F60\n");
@@ -180,7 +185,8 @@ TEST(GcodeDialects, OtherLineEndsAndDeletedBlocks) {
 // Frames and retracts are rewritten with their bytes; positions count from their frame.
 TEST(GcodeDialects, RewritesToItself) {
   const std::string text =
-      "G21 G90\nS900 M3\nG0 X0 Y0 Z5\nG52 X60 Y3\nG1 X1 Z-1 F60\nG90.1\nG2 X3 I2 J0\nG92 X0\nG1 X5.5\nG91 G28 Z0.\nG90\n"
+      "G21 G90\nS900 M3\nG0 X0 Y0 Z5\nG52 X60 Y3\nG1 X1 Z-1 F60\nG90.1\nG2 X3 I2 J0\nG92 X0\nG1 X5.5\nG91 G28 "
+      "Z0.\nG90\n"
       "G0 X9 Y9\nZ2\nG81 X9 Y9 Z-3 R1 F80\nX12\nG80\nG53 G0 Z0\nM30\n";
   const ProgramReading reading;
   const Program program = read_program_text(text, "part.nc", reading);
@@ -203,8 +209,10 @@ TEST(GcodeDialects, RewritesToItself) {
 // Cut off or changed at any place a program is read or rejected, and what is read is finite.
 TEST(GcodeDialects, SurvivesMutations) {
   const std::string good =
-      "%\nO1\nG21 G90 G5.1 Q1\nG54\nG0 X0 Y0 Z5.\nG43 H1 Z2.\nG52 X1.\nG1 X1. F60\nM98 P7 L2\nG92 X0\nG83 X3. Y1. Z-3. R1. Q.5 "
-      "P100 F90\nG91 X2. L3\nG80 G90\nG28 G91 Z0\nG53 G0 Z0\nG90 G0 X1. Y1. Z1.\nG10 L2 P1 X1. Y2. Z3.\nG70\nM97 P9\nM30\n"
+      "%\nO1\nG21 G90 G5.1 Q1\nG54\nG0 X0 Y0 Z5.\nG43 H1 Z2.\nG52 X1.\nG1 X1. F60\nM98 P7 L2\nG92 X0\nG83 X3. Y1. Z-3. "
+      "R1. Q.5 "
+      "P100 F90\nG91 X2. L3\nG80 G90\nG28 G91 Z0\nG53 G0 Z0\nG90 G0 X1. Y1. Z1.\nG10 L2 P1 X1. Y2. Z3.\nG70\nM97 "
+      "P9\nM30\n"
       "N9 G0 Z3.\nM99\nO7\nG1 X2. F9\nG82 Z-1. R.5 P.2\nG80 M99\n";
   ASSERT_EQ(said_of(good), "");
   static constexpr std::string_view letters = "GXYZRQPLKHMNOST0123456789.-/%\n\r: ,";

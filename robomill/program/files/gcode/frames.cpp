@@ -203,13 +203,14 @@ bool GcodeReader::is_elsewhere(const Line& line) {
   std::optional<Change> change = setup_change(line);
   const bool of_length = change && !center_point_lost(line);
   if (!change && !origin_m()) {
-    change = Change{.line = system_.line,
-                    .code = system_.code,
-                    .what = fmt::format("is another work frame than {} of the positions before{}; where the one lies in "
-                                        "the other is not known here",
-                                        base_->code.empty() ? "that" : base_->code,
-                                        base_->line > 0 ? fmt::format(" (line {})", base_->line) : ""),
-                    .hint = "Write a program for each frame, or give both by G10 L2 P X Y Z before the first position"};
+    change =
+        Change{.line = system_.line,
+               .code = system_.code,
+               .what = fmt::format("is another work frame than {} of the positions before{}; where the one lies in "
+                                   "the other is not known here",
+                                   base_->code.empty() ? "that" : base_->code,
+                                   base_->line > 0 ? fmt::format(" (line {})", base_->line) : ""),
+               .hint = "Write a program for each frame, or give both by G10 L2 P X Y Z before the first position"};
     if (shift_lost_.value) {
       change->line = shift_lost_.line;
       change->code = shift_lost_.code;

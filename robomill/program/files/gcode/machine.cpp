@@ -169,8 +169,9 @@ void GcodeReader::at_end() {
   std::string tools;
   for (std::size_t i = 0; i < std::min(mounted_.size(), most_named); ++i) {
     const Mounted& tool = mounted_[i];
-    tools += fmt::format("{}{} (line {})", i == 0 ? "" : ", ",
-                         tool.number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", tool.number), tool.line);
+    tools +=
+        fmt::format("{}{} (line {})", i == 0 ? "" : ", ",
+                    tool.number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", tool.number), tool.line);
   }
   if (mounted_count_ > most_named) tools += fmt::format(" and {} more", mounted_count_ - most_named);
   throw InvalidInput(InvalidInput::Parts{
@@ -190,7 +191,9 @@ void GcodeReader::begin_cutting() {
     if (!lost_rotary_[i] || !reading_.machine) continue;
     constexpr std::array<const char*, 3> names = {"A", "B", "C"};
     const bool has = i == 2 || static_cast<Eigen::Index>(i) == tilt_index(*reading_.machine);
-    if (has) reject(names[i], std::nullopt, "deg", "is not known where this line cuts: it went to the machine's own position", "Give the angle by G0 before it");
+    if (has)
+      reject(names[i], std::nullopt, "deg", "is not known where this line cuts: it went to the machine's own position",
+             "Give the angle by G0 before it");
   }
   if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero()) remarks_.no_center_point(line_);
 }

@@ -44,9 +44,9 @@ TEST(GcodeMachine, KnowsNoOtherMcode) {
 }
 
 TEST(GcodeMachine, EveryMcodeIsReadOrRejectedWithItsLine) {
-  const std::set<int> read_codes = {0,  1,  2,  3,  4,  5,  7,  8,  9,  10, 11, 12, 19,  29,  30,  31,  33, 34, 35,
-                                    40, 41, 42, 43, 44, 45, 48, 49, 51, 52, 53, 62, 63,  64,  65,  67, 68, 70,
-                                    71, 73, 74, 76, 77, 80, 81, 83, 84, 88, 89, 99, 128, 129, 428, 429};
+  const std::set<int> read_codes = {0,  1,  2,  3,  4,  5,  7,  8,  9,  10, 11, 12, 19, 29,  30,  31,  33, 34,
+                                    35, 40, 41, 42, 43, 44, 45, 48, 49, 51, 52, 53, 62, 63,  64,  65,  67, 68,
+                                    70, 71, 73, 74, 76, 77, 80, 81, 83, 84, 88, 89, 99, 128, 129, 428, 429};
   const std::set<int> ends = {2, 30, 99};
   for (int code = 0; code < 1100; ++code) {
     const std::string text = head + fmt::format("M{}\nG1 X2\n", code);
@@ -77,17 +77,16 @@ TEST(GcodeMachine, SaysWhatARejectedCodeDoes) {
 
 // All G codes from 0 to 999.9: those that are read, those that move nothing, and every other one rejected.
 TEST(GcodeMachine, EveryGcodeIsReadOrRejectedWithItsLine) {
-  std::set<int> read_codes = {0,   10,  170, 180, 190, 200, 210,  800,  900,  901,  910,  911,  930,  940, 150, 400, 490,
-                              500, 610, 611, 640, 690, 921, 922,  970,  980,  990,  430,  434,  435,  90,  131, 220, 230,
-                              250, 281, 301, 401, 501, 620, 630,  670,  1000, 1030, 1130, 1870, 2550, 280, 300, 520, 530,
-                              920, 591, 592, 593, 700, 710, 2340, 2690};
+  std::set<int> read_codes = {0,    10,   170, 180, 190, 200, 210, 800, 900, 901, 910, 911, 930,  940,  150,
+                              400,  490,  500, 610, 611, 640, 690, 921, 922, 970, 980, 990, 430,  434,  435,
+                              90,   131,  220, 230, 250, 281, 301, 401, 501, 620, 630, 670, 1000, 1030, 1130,
+                              1870, 2550, 280, 300, 520, 530, 920, 591, 592, 593, 700, 710, 2340, 2690};
   for (int code = 540; code <= 590; code += 10) read_codes.insert(code);
   for (int code = 1100; code <= 1290; code += 10) read_codes.insert(code);
   for (int code = 0; code < 10000; ++code) {
     const std::string text = fmt::format("G0 X0 Y0 Z0\nG{}\nG4 P1\n", 0.1 * code);
     // Arcs' ends, a dwell's time, a frame's number, a hole's depth.
-    const std::set<int> need_more = {20,  30,  40,  100, 541, 1540, 730, 740,
-                                     810, 820, 830, 840, 850, 860,  880, 890};
+    const std::set<int> need_more = {20, 30, 40, 100, 541, 1540, 730, 740, 810, 820, 830, 840, 850, 860, 880, 890};
     if (need_more.contains(code)) continue;
     const std::string said = said_of(text);
     if (read_codes.contains(code)) {

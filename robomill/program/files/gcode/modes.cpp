@@ -229,18 +229,20 @@ void GcodeReader::check_points(const Line& line) {
   throw InvalidInput(InvalidInput::Parts{
       .where = fmt::format("{}:{}", file_, mixed->whole_line),
       .field = mixed->whole_word,
-      .rule = fmt::format("has no point, and {} in line {} has one: it is {:g} {}, or {:g} {} on controls that count the "
-                          "smallest step (Fanuc, Haas)",
-                          mixed->point_word, mixed->point_line, number, unit_name(), number * least, unit_name()),
+      .rule =
+          fmt::format("has no point, and {} in line {} has one: it is {:g} {}, or {:g} {} on controls that count the "
+                      "smallest step (Fanuc, Haas)",
+                      mixed->point_word, mixed->point_line, number, unit_name(), number * least, unit_name()),
       .hint = fmt::format("Write {}. or {}{:g}", mixed->whole_word, mixed->whole_word.front(), number * least)});
 }
 
 double GcodeReader::seconds_of(const GcodeWords::Word& p, double least_ms) {
   const bool whole = p.text.find('.') == std::string_view::npos;
   if (!whole || p.number < least_ms) return p.number;
-  remarks_.assume({.what = fmt::format("Times of dwells that are whole numbers without a point, from {:g} on", least_ms),
-                   .taken = "milliseconds, as Fanuc and Haas count; LinuxCNC counts seconds",
-                   .key = "P with a point, in seconds"});
+  remarks_.assume(
+      {.what = fmt::format("Times of dwells that are whole numbers without a point, from {:g} on", least_ms),
+       .taken = "milliseconds, as Fanuc and Haas count; LinuxCNC counts seconds",
+       .key = "P with a point, in seconds"});
   return p.number * units::ms;
 }
 

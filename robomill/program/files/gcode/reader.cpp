@@ -109,7 +109,8 @@ void GcodeReader::read_wordless() {
   if (deleted && !compact.starts_with("//")) remarks_.count(ProgramRemarks::Count::deleted_block, line_);
   // What a lone % opens the next one closes.
   ended_ = compact == "%" && begun_;
-  if (ended_ && depth_ > 0) reject({}, std::nullopt, "", "a % ends the program within a subprogram", "Is its M99 missing?");
+  if (ended_ && depth_ > 0)
+    reject({}, std::nullopt, "", "a % ends the program within a subprogram", "Is its M99 missing?");
   begun_ = true;
 }
 
@@ -127,9 +128,10 @@ void GcodeReader::check_line(const Line& line) const {
     reject("G", line.other_unit->number, "", "is a cycle where such words come with it, which is not read",
            "Write G20 for inches and G21 for mm; let the CAM system write cycles as straight moves");
   }
-  remarks_.assume({.what = fmt::format("G{:g}", line.other_unit->number),
-                   .taken = inches_ ? "inches, as DIN 66025 and Sinumerik read it" : "mm, as DIN 66025 and Sinumerik read it",
-                   .key = inches_ ? "G20" : "G21"});
+  remarks_.assume(
+      {.what = fmt::format("G{:g}", line.other_unit->number),
+       .taken = inches_ ? "inches, as DIN 66025 and Sinumerik read it" : "mm, as DIN 66025 and Sinumerik read it",
+       .key = inches_ ? "G20" : "G21"});
 }
 
 void GcodeReader::leave_out_rest(Line& line) const {

@@ -84,8 +84,7 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> feed = {}, radius = {}, e = {};
     std::optional<GcodeWords::Word> p = {}, q = {}, l = {};
     Special special = Special::none;
-    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {},
-                                    other_unit = {};
+    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {}, other_unit = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
     std::optional<double> tool = {}, h = {};
@@ -242,13 +241,13 @@ class GcodeReader final : public ProgramReader {
   std::optional<double> feed_;  ///< under G94, in the unit of the line that said it per minute
   bool feed_in_inches_ = false;
 
-  std::array<bool, 3> known_ = {};     ///< X, Y, Z
-  int decimals_ = 0;                   ///< of a position's word, at most
-  int fixed_decimals_ = 9;             ///< that each position's word of the line has; 9: not alike
-  double highest_m_ = 0.0;             ///< that the tool was in W at the end of a line …
-  bool highest_known_ = false;         ///< … if one has come
-  Said<bool> lost_;                    ///< what made positions unknown
-  std::optional<Pose> pending_;        ///< where it is as far as that is known, while no blocks come
+  std::array<bool, 3> known_ = {};  ///< X, Y, Z
+  int decimals_ = 0;                ///< of a position's word, at most
+  int fixed_decimals_ = 9;          ///< that each position's word of the line has; 9: not alike
+  double highest_m_ = 0.0;          ///< that the tool was in W at the end of a line …
+  bool highest_known_ = false;      ///< … if one has come
+  Said<bool> lost_;                 ///< what made positions unknown
+  std::optional<Pose> pending_;     ///< where it is as far as that is known, while no blocks come
   std::array<bool, 3> lost_rotary_ = {};
   bool special_ = false;  ///< Modes::special
   Eigen::Vector3d rotary_deg_ = Eigen::Vector3d::Zero();

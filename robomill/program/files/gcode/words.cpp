@@ -72,9 +72,9 @@ void compact_letters(std::string_view line, const Place& place, std::string& out
 }  // namespace
 
 std::optional<OWord> o_word(std::string_view compact) {
-  constexpr std::array<std::string_view, 15> keywords = {"sub",    "endsub",    "call",  "return",  "if",
-                                                         "elseif", "else",      "endif", "do",      "while",
-                                                         "endwhile", "repeat", "endrepeat", "break", "continue"};
+  constexpr std::array<std::string_view, 15> keywords = {"sub",      "endsub", "call",      "return", "if",
+                                                         "elseif",   "else",   "endif",     "do",     "while",
+                                                         "endwhile", "repeat", "endrepeat", "break",  "continue"};
   if (!compact.starts_with('o')) return std::nullopt;
   std::size_t end = 1;
   if (end < compact.size() && compact[end] == '<') {

@@ -103,7 +103,8 @@ void GcodeRewriter::note(Statement& statement) {
   statement.says_feed = modal && find('f') != nullptr;
   statement.breaks_feed = after.feed_mode != before.feed_mode;
   const Move move = move_of(statement);
-  const std::span<const Block> blocks = std::span(job().as_read.blocks).subspan(statement.first_block, statement.blocks);
+  const std::span<const Block> blocks =
+      std::span(job().as_read.blocks).subspan(statement.first_block, statement.blocks);
   const auto feeds = [](const Block& block) { return block.kind == Block::Kind::feed; };
   if (!(after.special ? std::ranges::any_of(blocks, feeds) : move.count > 0 && move.at_feed)) return;
   statement.moves_at_feed = modal;
@@ -376,7 +377,8 @@ Rewriter::Composed GcodeRewriter::compose_special(std::size_t index) const {
   bool same = stand_as_read(index);
   for (std::size_t i = statement.first_block; i < statement.first_block + statement.blocks; ++i) {
     const Pose& end = job().wanted.blocks[i].end;
-    same = same && (end.tip_m - read.blocks[i].end.tip_m).norm() <= 1e-10 && same_axis(end.axis, read.blocks[i].end.axis);
+    same =
+        same && (end.tip_m - read.blocks[i].end.tip_m).norm() <= 1e-10 && same_axis(end.axis, read.blocks[i].end.axis);
   }
   if (!same && statement.blocks > 0) {
     reject(statement.line, "tip",
