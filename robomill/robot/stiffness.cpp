@@ -152,8 +152,8 @@ Stiffness stiffness(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& pos
   joint.diagonal() += joint_stiffness(arm);
   Stiffness out;
   out.condition_number = condition_number(jac, options.characteristic_length_m);
-  const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = linear_algebra::solve(joint, Eigen::MatrixXd(jac.transpose()));
-  out.compliance = jac * moved;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(joint);
+  out.compliance = jac * lu.solve(jac.transpose());
   if (!positive_definite(joint)) {
     out.status = Stiffness::Status::buckled;
   } else if (out.condition_number > options.max_condition_number) {

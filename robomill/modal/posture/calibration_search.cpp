@@ -1,5 +1,6 @@
 #include "robomill/modal/posture/calibration_search.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -133,10 +134,9 @@ CalibrationSearch::LeftOut CalibrationSearch::without(std::size_t posture) const
     if (trial_cost(common, differing, posture) < before) break;
     damping = damping == 0.0 ? marquardt_ : 6.0 * damping;
   }
-  if (damping > 0.0) precision = assemble(true, 0.0, posture);
+  const Eigen::LLT<Eigen::MatrixXd> factor(damping > 0.0 ? assemble(true, 0.0, posture) : precision);
   const Eigen::MatrixXd pick = picked(posture);
-  const Eigen::MatrixXd spread = linear_algebra::solve_positive_definite(precision, Eigen::MatrixXd(pick.transpose()));
-  return {.parameters = parameters_of(common, differing, posture), .covariance = pick * spread};
+  return {.parameters = parameters_of(common, differing, posture), .covariance = pick * factor.solve(pick.transpose())};
 }
 
 PostureNormal CalibrationSearch::evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters,

@@ -14,10 +14,6 @@
 namespace robomill::program {
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// The digits behind a letter, without leading zeros; empty where there are none.
 std::string digits_behind(std::string_view compact, std::size_t at) {
   std::size_t end = at;

@@ -29,10 +29,6 @@ bool is_letter(char c) {
   return c >= 'a' && c <= 'z';
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Whether a line is left out by the machine's switch: a slash at its begin or behind its number.
 bool is_deleted(std::string_view compact) {
   if (compact.starts_with('n')) {

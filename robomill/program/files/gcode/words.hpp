@@ -9,6 +9,11 @@
 
 namespace robomill::program {
 
+/// In every locale.
+[[nodiscard]] inline bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 /// A line of LinuxCNC's O words: "o100 sub", "o<hole> call [3]".
 struct OWord {
   std::string_view label;    ///< "100", "<hole>"
