@@ -29,6 +29,11 @@ bool takes_words(int code) {
   return std::ranges::find(takers, code) != takers.end();
 }
 
+/// As LinuxCNC and GRBL do, whose endings these are: mm and seconds, with or without a point.
+bool counts_whole_units(std::string_view file) {
+  return file.ends_with(".ngc") || file.ends_with(".gcode");
+}
+
 }  // namespace
 
 void GcodeReader::claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const {
@@ -219,9 +224,7 @@ void GcodeReader::check_points(const Line& line) {
   }
   decimals_ = std::max(decimals_, largest);
   fixed_decimals_ = fewest == largest ? fewest : most;
-  // LinuxCNC and GRBL, whose endings these are, count whole units.
-  const std::string_view file = file_;
-  if (file.ends_with(".ngc") || file.ends_with(".gcode")) return;
+  if (counts_whole_units(file_)) return;
   const std::optional<ProgramRemarks::MixedPoints> mixed = remarks_.mixed_points();
   if (!mixed) return;
   const double number = std::strtod(mixed->whole_word.c_str() + 1, nullptr);
@@ -238,7 +241,7 @@ void GcodeReader::check_points(const Line& line) {
 
 double GcodeReader::seconds_of(const GcodeWords::Word& p, double least_ms) {
   const bool whole = p.text.find('.') == std::string_view::npos;
-  if (!whole || p.number < least_ms) return p.number;
+  if (!whole || p.number < least_ms || counts_whole_units(file_)) return p.number;
   remarks_.assume(
       {.what = fmt::format("Times of dwells that are whole numbers without a point, from {:g} on", least_ms),
        .taken = "milliseconds, as Fanuc and Haas count; LinuxCNC counts seconds",
