@@ -122,6 +122,7 @@ FileChannel channel_of(const TdmsSegments& segments, const TdmsObject& object, T
 /// Channels of one name have their groups' before it.
 void set_names(std::vector<FileChannel>& channels, const std::vector<const TdmsObject*>& objects) {
   std::vector<std::string_view> names;
+  names.reserve(objects.size());
   for (const TdmsObject* object : objects) names.emplace_back(object->name);
   std::ranges::sort(names);
   for (std::size_t i = 0; i < channels.size(); ++i) {

@@ -68,8 +68,8 @@ std::optional<Vector3d> GcodeReader::origin_m() const {
   if (!base_) return offset_m;
   const auto table = tables_m_.find(system_.value);
   if (base_table_m_ && table != tables_m_.end()) return Vector3d(offset_m + table->second - *base_table_m_);
-  const bool as_it_was = system_.value == base_->value && !base_table_m_ && table == tables_m_.end();
-  return as_it_was ? std::optional(offset_m) : std::nullopt;
+  if (system_.value != base_->value || base_table_m_ || table != tables_m_.end()) return std::nullopt;
+  return offset_m;
 }
 
 void GcodeReader::set_local(const Line& line) {
