@@ -244,7 +244,7 @@ std::string schema_table(std::string_view document) {
   const std::vector<std::string> words = io::split_texts(document, ' ');
   const TableInfo& whole = info_of(words.front());
   if (words.size() == 1) return io::markdown_table(whole);
-  TableInfo some{.name = whole.name};
+  TableInfo some{.name = whole.name, .use = whole.use};
   std::ranges::copy_if(whole.keys, std::back_inserter(some.keys),
                        [&](const Key& key) { return std::ranges::find(words, key.name) != words.end(); });
   return io::markdown_table(some);

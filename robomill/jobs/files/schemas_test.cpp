@@ -60,6 +60,7 @@ TEST(Schemas, OfTomlDocumentsHaveTheTablesOfTheirReaders) {
        {"`spindle.curve[].power_kw` | kW, >= 0 | required", "`tool.teeth`", "`tool.max_axial_depth_mm`"})
     EXPECT_NE(table.find(key), std::string::npos) << key << table;
   EXPECT_EQ(table.find("safety"), std::string::npos);
+  EXPECT_EQ(schema_table("plan.json decision").find("required"), std::string::npos) << "nobody writes it";
   for (const char* name : {"lobes.toml", "job.toml", "forces.toml", "cell.toml", "hits.toml", "monitor.toml"}) {
     const io::Json keys = io::Json::parse(schema_text(name))["properties"];
     for (const char* key : {"include", "tool", "lobes", "job", "robot", "hits", "signal"})
