@@ -79,6 +79,7 @@ struct Of {
 template <class Part>
 std::vector<Of<Part>> each_of(const std::vector<Part>& parts, const ForcesResult* forces) {
   std::vector<Of<Part>> out;
+  out.reserve(parts.size());
   for (const Part& part : parts) out.push_back({&part, forces});
   return out;
 }

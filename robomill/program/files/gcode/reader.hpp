@@ -285,7 +285,6 @@ class GcodeReader final : public ProgramReader {
   Said<std::optional<double>> length_;  ///< H of G43; none: off. The tool's own counts as −1
   Said<CenterPoint> center_point_;
   bool cutting_ = false;  ///< a move at feed has come
-  std::size_t cutting_line_ = 0;
   struct Mounted {
     double number;
     std::size_t line;
