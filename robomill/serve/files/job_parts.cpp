@@ -196,7 +196,7 @@ class Reader {
   }
   /// The file that a key names, else the one that has a table; empty: neither.
   [[nodiscard]] fs::path part(const char* key, const char* table) const {
-    if (const fs::path file = named(key); !file.empty() || table == nullptr) return file;
+    if (fs::path file = named(key); !file.empty() || table == nullptr) return file;
     return file_with(table);
   }
   [[nodiscard]] fs::path file_with(const char* table) const {
