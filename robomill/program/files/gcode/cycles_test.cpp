@@ -78,7 +78,11 @@ TEST(GcodeCycles, TurnTheSpindleAsTheyTapAndBore) {
 TEST(GcodeCycles, LengthAndTimeAreThoseOfTheHoles) {
   Random random(72);
   for (int i = 0; i < test::seeds(2000); ++i) {
-    const double r = random.uniform(1.0, 4.0), depth = random.uniform(2.0, 40.0), q = random.uniform(0.3, 9.0);
+    // In whole micrometres, as they are written: the number of pecks is that of the program's numbers.
+    const auto um = [&](double low_mm, double high_mm) { return std::lround(1e3 * random.uniform(low_mm, high_mm)); };
+    const long r_um = um(1.0, 4.0), depth_um = um(2.0, 40.0), q_um = um(0.3, 9.0);
+    const double r = 1e-3 * static_cast<double>(r_um), depth = 1e-3 * static_cast<double>(depth_um),
+                 q = 1e-3 * static_cast<double>(q_um);
     const double feed = random.uniform(20.0, 900.0), dwell = random.uniform(0.1, 2.0);
     const bool pecks = random.index(2) == 0;
     const auto holes = 1 + random.index(9);
@@ -94,8 +98,8 @@ TEST(GcodeCycles, LengthAndTimeAreThoseOfTheHoles) {
       }
     }
     const double count = 1.0 + static_cast<double>(holes);
-    const double added_mm = pecks ? (std::ceil(depth / q) - 1.0) * 0.254 : 0.0;
-    EXPECT_NEAR(length_mm, count * (depth + added_mm), 1e-3 * length_mm + 0.26) << text;
+    const double added_mm = pecks ? 0.254 * static_cast<double>((depth_um - 1) / q_um) : 0.0;
+    EXPECT_NEAR(length_mm, count * (depth + added_mm), 1e-6) << text;
     const double expected_s = count * (60.0 * length_mm / count / feed + (pecks ? 0.0 : dwell));
     EXPECT_NEAR(time_s, expected_s, 1e-2 * expected_s) << text;
     EXPECT_NEAR(program.blocks.back().end.tip_m.x(), 1e-3 * (1.0 + 5.0 * static_cast<double>(holes)), 1e-6);
