@@ -131,16 +131,15 @@ void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, cons
   expect_within(in_time.simulation.vibrating_peak_force_n, fine.peak_force_n, seed + ": simulate's peak force");
 }
 
-/// Of the cuts, so that processors share them: a cut takes some 15 s of one.
+/// Of the cuts, so that processors share them.
 constexpr int parts = 4;
-
-// Flat ends: plan, lobes --at, forces, simulate and what the monitor advises from.
 class RandomCuts : public ::testing::TestWithParam<int> {};
 
+// Flat ends: plan, lobes --at, forces, simulate and what the monitor advises from.
 TEST_P(RandomCuts, AreTheSameInEveryVerb) {
   const Folder folder;
   Random random(17 + static_cast<std::uint64_t>(GetParam()));
-  const int seeds = test::seeds(10);
+  const int seeds = test::seeds(25);
   for (int i = 0; i < seeds; ++i) {
     const int n = GetParam() + parts * i;
     const std::string seed = fmt::format("seed {}", n);
