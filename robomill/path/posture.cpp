@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/path/postures/axis_tilt.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::path {
@@ -34,10 +36,6 @@ struct Candidate {
   Walk walk = {};
   Resemblance like = {};  ///< to home; of whom none is given, all alike
 };
-
-bool found(const Walk& walk) {
-  return walk.reach.status == robot::Reach::Status::found;
-}
 
 /// Whether a went better than b: to the end with the larger margin, or farther.
 bool better(const Candidate& a, const Candidate& b) {
@@ -138,6 +136,13 @@ End end_of(const robot::Kinematics& kinematics, const Head& head, const Candidat
   out.for_all = there.status != robot::Reach::Status::found;
   if (out.for_all) out.reach = there;
   return out;
+}
+
+/// Where no way goes through a singularity: the one that gets farthest, tilted beside it.
+TiltedWay tilted_beside(const Head& head, const Candidate& farthest, const PostureOptions& options) {
+  if (options.beside == nullptr || !(options.max_axis_tilt_rad > 0.0) || found(farthest.walk)) return {};
+  const TiltedWay way{.posture = {.start = farthest.start, .gamma_rad = {farthest.gamma_rad}}, .walk = farthest.walk};
+  return tilted_way(head, std::span(&way, 1), options);
 }
 
 /// Of a field in order of margin, half of what is kept is the first of it, half what resembles home most.
@@ -288,6 +293,9 @@ void PostureOptions::validate() const {
   require_positive("max_axis_step_rad", max_axis_step_rad, "rad");
   require_positive("max_tip_step_m", max_tip_step_m, "m");
   if (max_blocks < 1) throw InvalidInput("max_blocks", 0.0, "blocks", "must be >= 1");
+  if (!(max_axis_tilt_rad >= 0.0 && max_axis_tilt_rad <= most_tilt_rad)) {
+    throw InvalidInput("max_axis_tilt_rad", max_axis_tilt_rad, "rad", "must lie in [0, 0.1]");
+  }
 }
 
 InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kinematics, std::size_t block,
@@ -295,10 +303,11 @@ InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kin
   const char* unit = kinematics.turns_about_axis() ? "rad" : "m";
   const std::string joint = "joint " + std::to_string(reach.joint + 1);
   const std::string place = "block " + std::to_string(block + 1) + " (line " + std::to_string(line) + ")";
-  InvalidInput::Parts parts{.field = line > 0 ? place : "the program's start",
-                            .hint = kinematics.turns_about_axis()
-                                        ? "Move the workpiece, or turn the flange about the tool's axis"
-                                        : "Move the workpiece"};
+  const bool turning_helps =
+      kinematics.turns_about_axis() && (reach.joint + 1 == kinematics.joints() || !turns_last_joint_alone(kinematics));
+  InvalidInput::Parts parts{
+      .field = line > 0 ? place : "the program's start",
+      .hint = turning_helps ? "Move the workpiece, or turn the flange about the tool's axis" : "Move the workpiece"};
   switch (reach.status) {
     case robot::Reach::Status::out_of_reach:
       parts.rule = "is out of the machine's reach";
@@ -361,24 +370,39 @@ std::string singularity_text(const robot::Configuration& configuration) {
   return {};
 }
 
+bool turns_last_joint_alone(const robot::Kinematics& kinematics) {
+  if (!kinematics.turns_about_axis()) return false;
+  const robot::JointLimits& limits = kinematics.limits();
+  // Any position away from singularities shows it.
+  robot::Position6 position = robot::Position6::Zero(), turned;
+  for (int i = 0; i < kinematics.joints(); ++i) {
+    position(i) = std::clamp(0.3 + 0.1 * i, limits.min_position(i), limits.max_position(i));
+  }
+  robot::ToolPose pose = kinematics.forward(position);
+  pose.gamma_rad += 1e-3;
+  if (kinematics.follow(pose, position, turned).status != robot::Reach::Status::found) return false;
+  return (turned - position).head(kinematics.joints() - 1).cwiseAbs().maxCoeff() < 1e-9;
+}
+
 PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
                              const PostureOptions& options) {
   options.validate();
   const Head head = read_head(source, options.max_blocks);
   if (head.line.empty()) throw InvalidInput("program", "must hold at least one block");
-  PostureChoice out{.blocks = head.line.size(), .whole = head.whole};
+  PostureChoice out{.blocks = head.line.size(), .in_line = turns_last_joint_alone(kinematics), .whole = head.whole};
   const std::vector<double> along = stations(head, options);
   std::vector<Candidate> all = candidates(kinematics, head, options);
   const auto reject = [&](const robot::Reach& reach, std::size_t block) {
     return named_singularity(cannot_take(reach, kinematics, block, head.line[block]), reach,
                              kinematics.configuration(all.front().walk.last));
   };
-  const auto describe = [&] {
+  const auto roughly_walked = [&] {
+    return walk(kinematics, head, along, out.posture.gamma_rad, out.posture.start, roughly);
+  };
+  const auto describe = [&](const Walk& whole) {
     out.at_margin = kinematics.configuration(out.margin.position);
     if (!options.home) return;
-    const robot::Position6& start = out.posture.start;
-    const Walk whole = walk(kinematics, head, along, out.posture.gamma_rad, start, roughly);
-    out.resemblance = resemblance(kinematics, *options.home, start, whole.low, whole.high);
+    out.resemblance = resemblance(kinematics, *options.home, out.posture.start, whole.low, whole.high);
     out.resemblance->asked = options.home_asked;
   };
   if (all.empty()) {
@@ -396,17 +420,23 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
     if (found(best.walk)) {
       out.posture = {.start = best.start, .gamma_rad = {best.gamma_rad}};
       out.margin = best.walk.margin;
-      describe();
+      describe(roughly_walked());
       return out;
     }
   }
   const End end = end_of(kinematics, head, all.front(), options);
-  if (!may_turn || (!found(all.front().walk) && end.for_all)) throw reject(end.reach, end.block);
-  Posture turning = turning_posture(kinematics, head, along, options);
-  if (turning.gamma_rad.empty()) throw reject(end.reach, end.block);
-  out.margin = walk(kinematics, head, along, turning.gamma_rad, turning.start, exactly).margin;
-  out.posture = std::move(turning);
-  describe();
+  if (!found(all.front().walk) && end.for_all) throw reject(end.reach, end.block);
+  if (may_turn) out.posture = turning_posture(kinematics, head, along, options);
+  if (!out.posture.gamma_rad.empty()) {
+    out.margin = walk(kinematics, head, along, out.posture.gamma_rad, out.posture.start, exactly).margin;
+    describe(roughly_walked());
+  } else if (TiltedWay tilted = tilted_beside(head, all.front(), options); !tilted.posture.gamma_rad.empty()) {
+    out.margin = tilted.walk.margin;
+    out.posture = std::move(tilted.posture);
+    describe(tilted.walk);
+  } else {
+    throw reject(end.reach, end.block);
+  }
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "robomill/path/duration.hpp"
 #include "robomill/path/emitter.hpp"
 #include "robomill/path/posture.hpp"
+#include "robomill/path/postures/axis_tilt.hpp"
 #include "robomill/path/published/fir.hpp"
 #include "robomill/path/speed/planner.hpp"
 #include "robomill/path/speed/preview.hpp"
@@ -85,6 +86,21 @@ double gamma_after(const Posture& posture, std::size_t blocks_done) {
   throw cannot_take(status.reach, kinematics, status.block, status.line);
 }
 
+/// A block that is tilted, in its parts; each leaves the program's axis by the tilt.
+std::vector<program::Block> in_parts(std::span<const AxisTilt> tilts, std::size_t index, const program::Pose& from,
+                                     const program::Block& block, double tilt_rad) {
+  std::vector<program::Block> out;
+  double begin = 0.0;
+  for (const TiltedPart& part : tilted_parts(tilts, index, from, block.end)) {
+    out.push_back(block);
+    out.back().end = part.end;
+    out.back().duration_s = block.duration_s * (part.share - begin);
+    out.back().axis_deviation_rad += tilt_rad;
+    begin = part.share;
+  }
+  return out;
+}
+
 /// Feeds a program through a planner; `take` gets what is planned.
 template <class Take>
 void run(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics, Planner& planner,
@@ -100,8 +116,18 @@ void run(program::Source& source, const Posture& posture, const robot::Kinematic
   };
   hold(planner.begin(source.start(), gamma_after(posture, 0), posture.start));
   program::Block block;
+  program::Pose at = source.start();
   for (blocks = 0; source.next(block); ++blocks) {
-    hold(planner.push(block, blocks, gamma_after(posture, blocks + 1)));
+    const double gamma_rad = gamma_after(posture, blocks + 1), tilt_rad = tilt_within(posture.tilts, blocks);
+    const bool moves = block.kind != program::Block::Kind::dwell;
+    if (moves && tilt_rad > 0.0) {
+      for (const program::Block& part : in_parts(posture.tilts, blocks, at, block, tilt_rad)) {
+        hold(planner.push(part, blocks, gamma_rad));
+      }
+    } else {
+      hold(planner.push(block, blocks, gamma_rad));
+    }
+    if (moves) at = block.end;
     if (blocks % 64 == 0) progress.check();
   }
   hold(planner.finish());
