@@ -88,12 +88,14 @@ std::vector<Candidate> candidates(const robot::Kinematics& kinematics, const Hea
 
 /// Walks all of them and puts the best first; a stable order, so that threads change nothing.
 void walk_all(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-              const WalkOptions& options, const std::optional<robot::Position6>& home, std::vector<Candidate>& all) {
+              const WalkOptions& options, const std::optional<robot::Position6>& home, Progress& progress,
+              std::vector<Candidate>& all) {
   parallel_for(all.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Candidate& one = all[i];
       one.walk = walk(kinematics, head, along, {one.gamma_rad}, one.start, options);
       if (home) one.like = resemblance(kinematics, *home, one.start, one.walk.low, one.walk.high);
+      progress.advance();
     }
   });
   std::stable_sort(all.begin(), all.end(), better);
@@ -158,8 +160,8 @@ void narrow(std::vector<Candidate>& all) {
 class ExactWalks {
  public:
   ExactWalks(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-             const PostureOptions& options)
-      : kinematics_(kinematics), head_(head), along_(along), options_(options) {}
+             const PostureOptions& options, Progress& progress)
+      : kinematics_(kinematics), head_(head), along_(along), options_(options), progress_(progress) {}
 
   /// In order of what rough walks promise, until none can be better any more: those see no more than half of what is
   /// near. Leaves out those not walked.
@@ -201,7 +203,7 @@ class ExactWalks {
     std::vector<Candidate> out;
     out.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
                all.begin() + static_cast<std::ptrdiff_t>(std::min(begin + at_once, all.size())));
-    walk_all(kinematics_, head_, along_, exactly, options_.home, out);
+    walk_all(kinematics_, head_, along_, exactly, options_.home, progress_, out);
     return out;
   }
 
@@ -209,6 +211,7 @@ class ExactWalks {
   const Head& head_;
   const std::vector<double>& along_;
   const PostureOptions& options_;
+  Progress& progress_;
 };
 
 /// Puts the one to take first, or where none goes through, the one that gets farthest.
@@ -385,7 +388,7 @@ bool turns_last_joint_alone(const robot::Kinematics& kinematics) {
 }
 
 PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
-                             const PostureOptions& options) {
+                             const PostureOptions& options, Progress& progress) {
   options.validate();
   const Head head = read_head(source, options.max_blocks);
   if (head.line.empty()) throw InvalidInput("program", "must hold at least one block");
@@ -409,13 +412,15 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
     const robot::Position6 near = options.start.value_or(robot::Position6::Zero());
     throw cannot_take(reach_of(kinematics, head.pose.front(), near, options), kinematics, 0, 0);
   }
-  walk_all(kinematics, head, thinned(along, first_places), roughly, options.home, all);
+  // Each is walked once, some twice more.
+  progress.start("choosing the posture", all.size() + 2 * std::min(all.size(), second_candidates));
+  walk_all(kinematics, head, thinned(along, first_places), roughly, options.home, progress, all);
   narrow(all);
-  walk_all(kinematics, head, thinned(along, second_places), roughly, options.home, all);
+  walk_all(kinematics, head, thinned(along, second_places), roughly, options.home, progress, all);
   const bool may_turn = !options.gamma_rad && kinematics.turns_about_axis();
   const bool want_turning = may_turn && options.free_gamma;
   if (!want_turning) {
-    choose_exactly(ExactWalks(kinematics, head, along, options), options, all);
+    choose_exactly(ExactWalks(kinematics, head, along, options, progress), options, all);
     const Candidate& best = all.front();
     if (found(best.walk)) {
       out.posture = {.start = best.start, .gamma_rad = {best.gamma_rad}};

@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -86,10 +87,12 @@ struct PostureChoice {
 /// turns from block to block. Where that does not go through a singularity of the wrist either, the axis is tilted
 /// there by max_axis_tilt_rad. The program is looked at in steps, finer near a singularity and wherever a joint moves
 /// far.
-/// @throws InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one that gets
+/// @throws Interrupted; InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one
+/// that gets
 ///     farthest ends, its line, joint and amount; or that the start cannot be taken
 [[nodiscard]] ROBOMILL_API PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
-                                                        const PostureOptions& options = {});
+                                                        const PostureOptions& options = {},
+                                                        Progress& progress = Progress::none());
 
 /// The error for a pose that cannot be taken.
 /// @param block  from 0

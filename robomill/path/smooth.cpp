@@ -101,7 +101,10 @@ std::vector<program::Block> in_parts(std::span<const AxisTilt> tilts, std::size_
   return out;
 }
 
-/// Feeds a program through a planner; `take` gets what is planned.
+/// Between two reports of progress.
+constexpr std::size_t blocks_a_report = 64;
+
+/// Feeds a program through a planner, which advances the progress by its blocks; `take` gets what is planned.
 template <class Take>
 void run(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics, Planner& planner,
          Progress& progress, std::size_t& blocks, Take&& take) {
@@ -128,7 +131,7 @@ void run(program::Source& source, const Posture& posture, const robot::Kinematic
       hold(planner.push(block, blocks, gamma_rad));
     }
     if (moves) at = block.end;
-    if (blocks % 64 == 0) progress.check();
+    if (blocks % blocks_a_report == 0) progress.advance(blocks_a_report);
   }
   hold(planner.finish());
 }
@@ -295,16 +298,18 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
   options.validate();
   Summary out;
   source.rewind();
-  require_duration(source, options, progress);
+  const std::size_t blocks = require_duration(source, options, progress);
   source.rewind();
   restart();
   if (options.method != Method::verified && options.method != Method::optimal) {
     out.rounds = 1;
+    progress.start("smoothing", blocks);
     plan_published(source, kinematics, posture, options, sink, progress, out);
     return out;
   }
   SpeedCorrections corrections;
   for (out.rounds = 1;; ++out.rounds) {
+    progress.start(out.rounds == 1 ? "smoothing" : "smoothing again, round " + std::to_string(out.rounds), blocks);
     plan_once(source, kinematics, posture, options, corrections, sink, progress, out);
     if (out.samples == 0) {
       throw InvalidInput("program", "moves nothing", "A program of dwells alone has no path to plan");
@@ -315,6 +320,7 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
     restart();
   }
   if (out.blocks <= lower_bound_blocks) {
+    progress.start("least time", blocks);
     out.lower_bound_s = lower_bound_s(source, posture, kinematics, options, corrections, progress);
   }
   return out;

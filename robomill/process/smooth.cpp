@@ -57,7 +57,7 @@ std::array<bool, 6> prismatic_of(const cell::Cell& cell) {
 }
 
 /// @param beside  the machine that passes beside a singularity
-path::PostureChoice posture_of(const Bench& bench, const robot::Kinematics& beside) {
+path::PostureChoice posture_of(const Bench& bench, const robot::Kinematics& beside, Progress& progress) {
   path::PostureOptions options = cell::posture_options(bench.cell, *bench.machine);
   options.free_gamma = bench.smoothing.free_gamma;
   const path::SmoothingOptions& smoothing = bench.smoothing.options;
@@ -66,7 +66,7 @@ path::PostureChoice posture_of(const Bench& bench, const robot::Kinematics& besi
     options.max_axis_tilt_rad =
         std::min(tilt_share * smoothing.axis_tolerance_rad, path::PostureOptions::most_tilt_rad);
   }
-  return path::choose_posture(bench.program, *bench.machine, options);
+  return path::choose_posture(bench.program, *bench.machine, options, progress);
 }
 
 /// Calls f; an error that names no place is the program's.
@@ -83,14 +83,14 @@ auto located_in_program(const std::filesystem::path& program, F&& f) {
 }
 
 /// The machine, and its posture where none is given.
-void prepare(Bench& bench, const SmoothOptions& options) {
+void prepare(Bench& bench, const SmoothOptions& options, Progress& progress) {
   bench.machine = cell::kinematics(bench.cell);
   bench.prismatic = prismatic_of(bench.cell);
   std::unique_ptr<robot::Kinematics> beside = cell::kinematics(bench.cell, condition_beside);
   if (options.posture) {
     bench.posture.posture = *options.posture;
   } else {
-    bench.posture = located_in_program(bench.path, [&] { return posture_of(bench, *beside); });
+    bench.posture = located_in_program(bench.path, [&] { return posture_of(bench, *beside, progress); });
   }
   if (bench.posture.posture.beside_singularity) bench.machine = std::move(beside);
 }
@@ -411,7 +411,7 @@ program::ProgramReading smoothed_reading(const cell::Cell& cell, const path::Smo
 SmoothResult smooth(program::Source& program, const std::filesystem::path& path, const cell::Cell& cell,
                     const path::SmoothingFile& smoothing, const SmoothOptions& options, Progress& progress) {
   Bench bench = {.cell = cell, .smoothing = smoothing, .program = program, .path = path};
-  prepare(bench, options);
+  prepare(bench, options, progress);
   SmoothResult result;
   result.smoothing = smoothing;
   result.posture = bench.posture;

@@ -132,9 +132,8 @@ class Crossing {
   /// From the wrist's singularity [rad]; infinite where the pose is out of reach or its configuration not known.
   [[nodiscard]] double wrist_of(const program::Pose& pose) const {
     robot::Position6 position;
-    const robot::Reach reach =
-        machine_.follow(robot::ToolPose{.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = gamma_rad_}, near_,
-                        position);
+    const robot::Reach reach = machine_.follow(
+        robot::ToolPose{.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = gamma_rad_}, near_, position);
     if (reach.status == robot::Reach::Status::out_of_reach) return HUGE_VAL;
     const robot::Configuration configuration = machine_.configuration(position);
     return configuration.known ? configuration.wrist_rad : HUGE_VAL;
