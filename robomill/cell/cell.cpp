@@ -17,10 +17,12 @@ program::ProgramReading program_reading(const Cell& cell) {
   return reading;
 }
 
-std::unique_ptr<robot::Kinematics> kinematics(const Cell& cell) {
+std::unique_ptr<robot::Kinematics> kinematics(const Cell& cell, double max_condition_number) {
   if (cell.hybrid) return std::make_unique<robot::HybridKinematics>(*cell.hybrid);
   try {
-    return std::make_unique<robot::SerialKinematics>(cell.robot);
+    robot::SerialOptions options;
+    options.singularity.max_condition_number = max_condition_number;
+    return std::make_unique<robot::SerialKinematics>(cell.robot, options);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     parts.where = cell.path.string();

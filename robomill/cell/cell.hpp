@@ -14,6 +14,7 @@
 #include "robomill/robot/collision.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
+#include "robomill/robot/stiffness.hpp"
 
 // Method: robomill/cell/README.md, "The cell (`cell.hpp`)"
 
@@ -57,8 +58,10 @@ struct Cell {
 };
 
 /// The cell's machine with its derivatives.
+/// @param max_condition_number  of a serial arm: beyond it a position is singular
 /// @throws InvalidInput with the cell's file, if a serial arm has not six joints, all revolute
-[[nodiscard]] ROBOMILL_API std::unique_ptr<robot::Kinematics> kinematics(const Cell& cell);
+[[nodiscard]] ROBOMILL_API std::unique_ptr<robot::Kinematics> kinematics(
+    const Cell& cell, double max_condition_number = robot::SingularityOptions{}.max_condition_number);
 
 /// How programs of the cell are read.
 [[nodiscard]] ROBOMILL_API program::ProgramReading program_reading(const Cell& cell);

@@ -113,10 +113,16 @@ std::vector<std::string> posture_notes(const path::PostureChoice& choice) {
                                 like.turns > 1 ? "s" : "", like.asked ? "what was asked" : "home"));
     }
   }
-  if (const std::string near = path::singularity_text(choice.at_margin); !near.empty() && choice.margin.joint < 0) {
+  for (const path::AxisTilt& tilt : choice.posture.tilts) {
     out.push_back(fmt::format(
-        "In block {} {}: joints turn far there and slow the tool down. Move or tilt the workpiece, or turn the flange.",
-        choice.margin.block + 1, near));
+        "Block {} leads through a singularity of the wrist. The tool's axis is tilted by {:.2g}° beside it, "
+        "within axis_tolerance_deg: joint 4 makes half a turn there and slows the tool down.",
+        static_cast<std::size_t>(0.5 * (tilt.full_from + tilt.full_to)) + 1, tilt.angle_rad / units::deg));
+  }
+  if (const std::string near = path::singularity_text(choice.at_margin); !near.empty() && choice.margin.joint < 0) {
+    out.push_back(
+        fmt::format("In block {} {}: joints turn far there and slow the tool down. Move or tilt the workpiece{}.",
+                    choice.margin.block + 1, near, choice.in_line ? "" : ", or turn the flange"));
   }
   return out;
 }

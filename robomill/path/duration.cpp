@@ -30,8 +30,9 @@ constexpr const char* settable = "[smoothing] max_duration_h sets what is allowe
 /// What a program is made of.
 struct Program {
   double length_m = 0.0, angle_rad = 0.0;  ///< of the whole way
-  double duration_s = 0.0;                 ///< by its feeds and dwells and the limits of velocity
-  double longest_s = 0.0;                  ///< of its blocks
+  std::size_t blocks = 0;
+  double duration_s = 0.0;  ///< by its feeds and dwells and the limits of velocity
+  double longest_s = 0.0;   ///< of its blocks
   program::Block longest;
   std::size_t longest_block = 0;
   double longest_m = 0.0;
@@ -41,7 +42,8 @@ Program survey(program::Source& source, const SmoothingOptions& options, Progres
   Program out;
   program::Pose at = source.start();
   program::Block block;
-  for (std::size_t i = 0; source.next(block); ++i) {
+  progress.start("reading the program", 0);
+  for (std::size_t i = 0; source.next(block); out.blocks = ++i) {
     if (i % 1024 == 0) progress.check();
     double took_s = block.duration_s, length_m = 0.0;
     if (block.kind != program::Block::Kind::dwell) {
@@ -108,10 +110,13 @@ void require_affordable_samples(const SmoothingOptions& options, double duration
 
 }  // namespace
 
-void require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress) {
+std::size_t require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress) {
   const Program program = survey(source, options, progress);
   require_limits(program, options);
-  if (program.duration_s <= options.max_duration_s) return require_affordable_samples(options, program.duration_s);
+  if (program.duration_s <= options.max_duration_s) {
+    require_affordable_samples(options, program.duration_s);
+    return program.blocks;
+  }
   const bool dwell = program.longest.kind == program::Block::Kind::dwell;
   const double feed = program.longest_m / program.longest_s / mm_per_min;
   InvalidInput::Parts parts{.field = "block " + std::to_string(program.longest_block + 1) + " (line " +

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "robomill/base/error.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/path/options.hpp"
@@ -9,8 +11,9 @@ namespace robomill::path {
 /// Whether a program can end within options.max_duration_s, by its length, feeds and dwells, before anything of it is
 /// planned. Of a length S from rest to rest a velocity limit v takes S/v, an acceleration limit a 2 √(S/a), a jerk
 /// limit j (32 S/j)^(1/3); corners cut by the tolerances are not taken off.
+/// @return the number of its blocks
 /// @throws InvalidInput naming the limit, or the block and line that takes longest
-void require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress);
+std::size_t require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress);
 
 /// The same of motion planned within every limit, up to a block, before it is sampled. Of the last two 0 where it is
 /// the whole.

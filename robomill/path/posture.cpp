@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/path/postures/axis_tilt.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::path {
@@ -34,10 +36,6 @@ struct Candidate {
   Walk walk = {};
   Resemblance like = {};  ///< to home; of whom none is given, all alike
 };
-
-bool found(const Walk& walk) {
-  return walk.reach.status == robot::Reach::Status::found;
-}
 
 /// Whether a went better than b: to the end with the larger margin, or farther.
 bool better(const Candidate& a, const Candidate& b) {
@@ -90,12 +88,14 @@ std::vector<Candidate> candidates(const robot::Kinematics& kinematics, const Hea
 
 /// Walks all of them and puts the best first; a stable order, so that threads change nothing.
 void walk_all(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-              const WalkOptions& options, const std::optional<robot::Position6>& home, std::vector<Candidate>& all) {
+              const WalkOptions& options, const std::optional<robot::Position6>& home, Progress& progress,
+              std::vector<Candidate>& all) {
   parallel_for(all.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Candidate& one = all[i];
       one.walk = walk(kinematics, head, along, {one.gamma_rad}, one.start, options);
       if (home) one.like = resemblance(kinematics, *home, one.start, one.walk.low, one.walk.high);
+      progress.advance();
     }
   });
   std::stable_sort(all.begin(), all.end(), better);
@@ -140,6 +140,13 @@ End end_of(const robot::Kinematics& kinematics, const Head& head, const Candidat
   return out;
 }
 
+/// Where no way goes through a singularity: the one that gets farthest, tilted beside it.
+TiltedWay tilted_beside(const Head& head, const Candidate& farthest, const PostureOptions& options) {
+  if (options.beside == nullptr || !(options.max_axis_tilt_rad > 0.0) || found(farthest.walk)) return {};
+  const TiltedWay way{.posture = {.start = farthest.start, .gamma_rad = {farthest.gamma_rad}}, .walk = farthest.walk};
+  return tilted_way(head, std::span(&way, 1), options);
+}
+
 /// Of a field in order of margin, half of what is kept is the first of it, half what resembles home most.
 void narrow(std::vector<Candidate>& all) {
   if (all.size() <= second_candidates) return;
@@ -153,8 +160,8 @@ void narrow(std::vector<Candidate>& all) {
 class ExactWalks {
  public:
   ExactWalks(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
-             const PostureOptions& options)
-      : kinematics_(kinematics), head_(head), along_(along), options_(options) {}
+             const PostureOptions& options, Progress& progress)
+      : kinematics_(kinematics), head_(head), along_(along), options_(options), progress_(progress) {}
 
   /// In order of what rough walks promise, until none can be better any more: those see no more than half of what is
   /// near. Leaves out those not walked.
@@ -196,7 +203,7 @@ class ExactWalks {
     std::vector<Candidate> out;
     out.assign(all.begin() + static_cast<std::ptrdiff_t>(begin),
                all.begin() + static_cast<std::ptrdiff_t>(std::min(begin + at_once, all.size())));
-    walk_all(kinematics_, head_, along_, exactly, options_.home, out);
+    walk_all(kinematics_, head_, along_, exactly, options_.home, progress_, out);
     return out;
   }
 
@@ -204,6 +211,7 @@ class ExactWalks {
   const Head& head_;
   const std::vector<double>& along_;
   const PostureOptions& options_;
+  Progress& progress_;
 };
 
 /// Puts the one to take first, or where none goes through, the one that gets farthest.
@@ -288,6 +296,9 @@ void PostureOptions::validate() const {
   require_positive("max_axis_step_rad", max_axis_step_rad, "rad");
   require_positive("max_tip_step_m", max_tip_step_m, "m");
   if (max_blocks < 1) throw InvalidInput("max_blocks", 0.0, "blocks", "must be >= 1");
+  if (!(max_axis_tilt_rad >= 0.0 && max_axis_tilt_rad <= most_tilt_rad)) {
+    throw InvalidInput("max_axis_tilt_rad", max_axis_tilt_rad, "rad", "must lie in [0, 0.1]");
+  }
 }
 
 InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kinematics, std::size_t block,
@@ -295,10 +306,11 @@ InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kin
   const char* unit = kinematics.turns_about_axis() ? "rad" : "m";
   const std::string joint = "joint " + std::to_string(reach.joint + 1);
   const std::string place = "block " + std::to_string(block + 1) + " (line " + std::to_string(line) + ")";
-  InvalidInput::Parts parts{.field = line > 0 ? place : "the program's start",
-                            .hint = kinematics.turns_about_axis()
-                                        ? "Move the workpiece, or turn the flange about the tool's axis"
-                                        : "Move the workpiece"};
+  const bool turning_helps =
+      kinematics.turns_about_axis() && (reach.joint + 1 == kinematics.joints() || !turns_last_joint_alone(kinematics));
+  InvalidInput::Parts parts{
+      .field = line > 0 ? place : "the program's start",
+      .hint = turning_helps ? "Move the workpiece, or turn the flange about the tool's axis" : "Move the workpiece"};
   switch (reach.status) {
     case robot::Reach::Status::out_of_reach:
       parts.rule = "is out of the machine's reach";
@@ -361,52 +373,75 @@ std::string singularity_text(const robot::Configuration& configuration) {
   return {};
 }
 
+bool turns_last_joint_alone(const robot::Kinematics& kinematics) {
+  if (!kinematics.turns_about_axis()) return false;
+  const robot::JointLimits& limits = kinematics.limits();
+  // Any position away from singularities shows it.
+  robot::Position6 position = robot::Position6::Zero(), turned;
+  for (int i = 0; i < kinematics.joints(); ++i) {
+    position(i) = std::clamp(0.3 + 0.1 * i, limits.min_position(i), limits.max_position(i));
+  }
+  robot::ToolPose pose = kinematics.forward(position);
+  pose.gamma_rad += 1e-3;
+  if (kinematics.follow(pose, position, turned).status != robot::Reach::Status::found) return false;
+  return (turned - position).head(kinematics.joints() - 1).cwiseAbs().maxCoeff() < 1e-9;
+}
+
 PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
-                             const PostureOptions& options) {
+                             const PostureOptions& options, Progress& progress) {
   options.validate();
   const Head head = read_head(source, options.max_blocks);
   if (head.line.empty()) throw InvalidInput("program", "must hold at least one block");
-  PostureChoice out{.blocks = head.line.size(), .whole = head.whole};
+  PostureChoice out{.blocks = head.line.size(), .in_line = turns_last_joint_alone(kinematics), .whole = head.whole};
   const std::vector<double> along = stations(head, options);
   std::vector<Candidate> all = candidates(kinematics, head, options);
   const auto reject = [&](const robot::Reach& reach, std::size_t block) {
     return named_singularity(cannot_take(reach, kinematics, block, head.line[block]), reach,
                              kinematics.configuration(all.front().walk.last));
   };
-  const auto describe = [&] {
+  const auto roughly_walked = [&] {
+    return walk(kinematics, head, along, out.posture.gamma_rad, out.posture.start, roughly);
+  };
+  const auto describe = [&](const Walk& whole) {
     out.at_margin = kinematics.configuration(out.margin.position);
     if (!options.home) return;
-    const robot::Position6& start = out.posture.start;
-    const Walk whole = walk(kinematics, head, along, out.posture.gamma_rad, start, roughly);
-    out.resemblance = resemblance(kinematics, *options.home, start, whole.low, whole.high);
+    out.resemblance = resemblance(kinematics, *options.home, out.posture.start, whole.low, whole.high);
     out.resemblance->asked = options.home_asked;
   };
   if (all.empty()) {
     const robot::Position6 near = options.start.value_or(robot::Position6::Zero());
     throw cannot_take(reach_of(kinematics, head.pose.front(), near, options), kinematics, 0, 0);
   }
-  walk_all(kinematics, head, thinned(along, first_places), roughly, options.home, all);
+  // Each is walked once, some twice more.
+  progress.start("choosing the posture", all.size() + 2 * std::min(all.size(), second_candidates));
+  walk_all(kinematics, head, thinned(along, first_places), roughly, options.home, progress, all);
   narrow(all);
-  walk_all(kinematics, head, thinned(along, second_places), roughly, options.home, all);
+  walk_all(kinematics, head, thinned(along, second_places), roughly, options.home, progress, all);
   const bool may_turn = !options.gamma_rad && kinematics.turns_about_axis();
   const bool want_turning = may_turn && options.free_gamma;
   if (!want_turning) {
-    choose_exactly(ExactWalks(kinematics, head, along, options), options, all);
+    choose_exactly(ExactWalks(kinematics, head, along, options, progress), options, all);
     const Candidate& best = all.front();
     if (found(best.walk)) {
       out.posture = {.start = best.start, .gamma_rad = {best.gamma_rad}};
       out.margin = best.walk.margin;
-      describe();
+      describe(roughly_walked());
       return out;
     }
   }
   const End end = end_of(kinematics, head, all.front(), options);
-  if (!may_turn || (!found(all.front().walk) && end.for_all)) throw reject(end.reach, end.block);
-  Posture turning = turning_posture(kinematics, head, along, options);
-  if (turning.gamma_rad.empty()) throw reject(end.reach, end.block);
-  out.margin = walk(kinematics, head, along, turning.gamma_rad, turning.start, exactly).margin;
-  out.posture = std::move(turning);
-  describe();
+  if (!found(all.front().walk) && end.for_all) throw reject(end.reach, end.block);
+  if (may_turn) out.posture = turning_posture(kinematics, head, along, options);
+  if (!out.posture.gamma_rad.empty()) {
+    out.margin = walk(kinematics, head, along, out.posture.gamma_rad, out.posture.start, exactly).margin;
+    describe(roughly_walked());
+  } else if (TiltedWay tilted = tilted_beside(head, all.front(), options); !tilted.posture.gamma_rad.empty()) {
+    out.margin = tilted.walk.margin;
+    out.posture = std::move(tilted.posture);
+    describe(tilted.walk);
+  } else {
+    throw reject(end.reach, end.block);
+  }
   return out;
 }
 

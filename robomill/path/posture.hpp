@@ -5,6 +5,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -26,6 +27,11 @@ struct ROBOMILL_API PostureOptions {
   double max_axis_step_rad = 0.035;  ///< > 0; between two looks along the program: turn of the axis <= this …
   double max_tip_step_m = 0.005;     ///< > 0; … and way of the tip <= this
   std::size_t max_blocks = 20'000;   ///< >= 1; a longer program is judged by its first so many
+  /// What may pass beside a singularity of the wrist through which every way leads: the same machine with a larger
+  /// bound of its condition number, and by how much the axis may leave the program's there. Null: nothing.
+  const robot::Kinematics* beside = nullptr;
+  double max_axis_tilt_rad = 0.0;  ///< in [0, most_tilt_rad]
+  static constexpr double most_tilt_rad = 0.1;
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -55,6 +61,7 @@ struct PostureChoice {
   std::size_t blocks = 0;                       ///< looked at
   std::optional<Resemblance> resemblance = {};  ///< of the start to home, where home is given
   robot::Configuration at_margin = {};          ///< where the margin is least
+  bool in_line = false;                         ///< turns_last_joint_alone() of the machine
   bool whole = true;                            ///< they are all
 };
 
@@ -68,17 +75,24 @@ struct PostureChoice {
 /// from 5° or 50 mm on.
 [[nodiscard]] ROBOMILL_API std::string singularity_text(const robot::Configuration& configuration);
 
+/// Whether a turn about the tool's axis moves the last joint and no other: the spindle stands in line with the flange,
+/// and turning the flange leads away from no singularity and from no limit of another joint.
+[[nodiscard]] ROBOMILL_API bool turns_last_joint_alone(const robot::Kinematics& kinematics);
+
 /// Chooses where a machine starts and how the flange is turned about the tool's axis, of all constant gammas and all
 /// ways to the first pose that go through with a margin of 0.05; where none has that much, with half of the largest
 /// margin there is. Of them those with home's shoulder, elbow and wrist come first, in this order, then those with the
 /// fewest whole turns away from home, then the one nearest to home, for which margin_for_home of the largest margin of
 /// its kind is given up at most. Without home the largest margin decides. Where no constant gamma goes through, gamma
-/// turns from block to block. The program is looked at in steps, finer near a singularity and wherever a joint moves
+/// turns from block to block. Where that does not go through a singularity of the wrist either, the axis is tilted
+/// there by max_axis_tilt_rad. The program is looked at in steps, finer near a singularity and wherever a joint moves
 /// far.
-/// @throws InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one that gets
+/// @throws Interrupted; InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one
+/// that gets
 ///     farthest ends, its line, joint and amount; or that the start cannot be taken
 [[nodiscard]] ROBOMILL_API PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
-                                                        const PostureOptions& options = {});
+                                                        const PostureOptions& options = {},
+                                                        Progress& progress = Progress::none());
 
 /// The error for a pose that cannot be taken.
 /// @param block  from 0

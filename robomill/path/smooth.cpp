@@ -13,6 +13,7 @@
 #include "robomill/path/duration.hpp"
 #include "robomill/path/emitter.hpp"
 #include "robomill/path/posture.hpp"
+#include "robomill/path/postures/axis_tilt.hpp"
 #include "robomill/path/published/fir.hpp"
 #include "robomill/path/speed/planner.hpp"
 #include "robomill/path/speed/preview.hpp"
@@ -85,7 +86,25 @@ double gamma_after(const Posture& posture, std::size_t blocks_done) {
   throw cannot_take(status.reach, kinematics, status.block, status.line);
 }
 
-/// Feeds a program through a planner; `take` gets what is planned.
+/// A block that is tilted, in its parts; each leaves the program's axis by the tilt.
+std::vector<program::Block> in_parts(std::span<const AxisTilt> tilts, std::size_t index, const program::Pose& from,
+                                     const program::Block& block, double tilt_rad) {
+  std::vector<program::Block> out;
+  double begin = 0.0;
+  for (const TiltedPart& part : tilted_parts(tilts, index, from, block.end)) {
+    out.push_back(block);
+    out.back().end = part.end;
+    out.back().duration_s = block.duration_s * (part.share - begin);
+    out.back().axis_deviation_rad += tilt_rad;
+    begin = part.share;
+  }
+  return out;
+}
+
+/// Between two reports of progress.
+constexpr std::size_t blocks_a_report = 64;
+
+/// Feeds a program through a planner, which advances the progress by its blocks; `take` gets what is planned.
 template <class Take>
 void run(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics, Planner& planner,
          Progress& progress, std::size_t& blocks, Take&& take) {
@@ -100,9 +119,19 @@ void run(program::Source& source, const Posture& posture, const robot::Kinematic
   };
   hold(planner.begin(source.start(), gamma_after(posture, 0), posture.start));
   program::Block block;
+  program::Pose at = source.start();
   for (blocks = 0; source.next(block); ++blocks) {
-    hold(planner.push(block, blocks, gamma_after(posture, blocks + 1)));
-    if (blocks % 64 == 0) progress.check();
+    const double gamma_rad = gamma_after(posture, blocks + 1), tilt_rad = tilt_within(posture.tilts, blocks);
+    const bool moves = block.kind != program::Block::Kind::dwell;
+    if (moves && tilt_rad > 0.0) {
+      for (const program::Block& part : in_parts(posture.tilts, blocks, at, block, tilt_rad)) {
+        hold(planner.push(part, blocks, gamma_rad));
+      }
+    } else {
+      hold(planner.push(block, blocks, gamma_rad));
+    }
+    if (moves) at = block.end;
+    if (blocks % blocks_a_report == 0) progress.advance(blocks_a_report);
   }
   hold(planner.finish());
 }
@@ -269,16 +298,18 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
   options.validate();
   Summary out;
   source.rewind();
-  require_duration(source, options, progress);
+  const std::size_t blocks = require_duration(source, options, progress);
   source.rewind();
   restart();
   if (options.method != Method::verified && options.method != Method::optimal) {
     out.rounds = 1;
+    progress.start("smoothing", blocks);
     plan_published(source, kinematics, posture, options, sink, progress, out);
     return out;
   }
   SpeedCorrections corrections;
   for (out.rounds = 1;; ++out.rounds) {
+    progress.start(out.rounds == 1 ? "smoothing" : "smoothing again, round " + std::to_string(out.rounds), blocks);
     plan_once(source, kinematics, posture, options, corrections, sink, progress, out);
     if (out.samples == 0) {
       throw InvalidInput("program", "moves nothing", "A program of dwells alone has no path to plan");
@@ -289,6 +320,7 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
     restart();
   }
   if (out.blocks <= lower_bound_blocks) {
+    progress.start("least time", blocks);
     out.lower_bound_s = lower_bound_s(source, posture, kinematics, options, corrections, progress);
   }
   return out;

@@ -29,10 +29,23 @@ struct Summary {
   CheckResult check = {};
 };
 
+/// Where the tool's axis leaves the program's on purpose. Places t count blocks from the program's start: block i runs
+/// from i to i + 1. The tilt grows from 0 at `from` to angle_rad at `full_from`, stays until `full_to`, and is 0 at
+/// `to`.
+struct AxisTilt {
+  double from = 0.0, full_from = 0.0, full_to = 0.0, to = 0.0;
+  Eigen::Vector3d toward = Eigen::Vector3d::UnitX();  ///< unit vector in W, across the axis
+  double angle_rad = 0.0;
+};
+
 /// Where a smoothed program begins and how it is turned about the tool's axis.
 struct Posture {
   robot::Position6 start = robot::Position6::Zero();
   std::vector<double> gamma_rad = {};  ///< one for all, or one at the start and one at each block's end
+  /// In order, without overlap; what they take of the axis' tolerance is not left to corners. The published methods
+  /// know none.
+  std::vector<AxisTilt> tilts = {};
+  bool beside_singularity = false;  ///< taken by a machine with a larger bound of its condition number
 };
 
 /// Smooths a program. Samples of the last round go to `sink` in order; a round that breaks a limit is thrown away and

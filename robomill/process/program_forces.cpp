@@ -11,6 +11,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/unusual_cut.hpp"
+#include "robomill/path/posture.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/kinematics/choose.hpp"
 #include "robomill/robot/stiffness.hpp"
@@ -56,12 +57,15 @@ void reported_of_cell(const cell::Cell& cell, F&& f) {
   }
 }
 
-InvalidInput out_of_the_way(const std::filesystem::path& path, const program::Block& block, std::string rule) {
+InvalidInput out_of_the_way(const cell::Cell& cell, const std::filesystem::path& path, const program::Block& block,
+                            std::string rule) {
+  const bool in_line = path::turns_last_joint_alone(*cell::kinematics(cell));
   return InvalidInput(
       InvalidInput::Parts{.where = where(path, block),
                           .field = "this block",
                           .rule = std::move(rule),
-                          .hint = "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
+                          .hint = in_line ? "Move [workpiece] origin_mm"
+                                          : "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
 }
 
 /// Joints at the end of every block of an arm without a spherical wrist: by Newton's method from one block to the next.
@@ -79,7 +83,7 @@ std::vector<robot::Position6> joints_near(const cell::Cell& file, const program:
   for (std::size_t i = 0; i < flanges.size(); ++i) {
     const robot::NearResult near = robot::solve_near(arm, flanges[i], at);
     if (near.status != robot::NearResult::Status::converged) {
-      throw out_of_the_way(path, program.blocks[i],
+      throw out_of_the_way(file, path, program.blocks[i],
                            fmt::format("was not reached: {:.3g} mm and {:.3g}° are left", near.error_m / units::mm,
                                        near.error_rad / units::deg));
     }
@@ -87,7 +91,7 @@ std::vector<robot::Position6> joints_near(const cell::Cell& file, const program:
     const robot::LimitCheck limits = robot::within_limits(arm, at);
     if (!limits.inside) {
       throw out_of_the_way(
-          path, program.blocks[i],
+          file, path, program.blocks[i],
           fmt::format("takes joint {} {:.3g}° beyond its limit", limits.joint + 1, -limits.distance / units::deg));
     }
     out.push_back(at);
@@ -117,7 +121,7 @@ std::vector<robot::Position6> joints_along(const cell::Cell& file, const program
   }
   const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, options);
   if (way.status != robot::Reach::Status::found) {
-    throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
+    throw out_of_the_way(file, path, program.blocks[way.reached], reason(way.last));
   }
   return way.position_rad;
 }
@@ -137,10 +141,10 @@ std::vector<Eigen::Matrix3d> compliances(const cell::Cell& file, const std::vect
   return out;
 }
 
-void require_held(robot::Stiffness::Status status, const program::Block& block, const std::filesystem::path& path,
-                  const BlockResult& row) {
+void require_held(robot::Stiffness::Status status, const cell::Cell& cell, const program::Block& block,
+                  const std::filesystem::path& path, const BlockResult& row) {
   if (status == robot::Stiffness::Status::singular) {
-    throw out_of_the_way(path, block,
+    throw out_of_the_way(cell, path, block,
                          fmt::format("is singular for the robot (condition number {:.3g})", row.condition_number));
   }
   if (status == robot::Stiffness::Status::buckled) {
@@ -157,7 +161,7 @@ void bend(const cell::Cell& file, const std::vector<robot::Position6>& joints, c
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       rows[i].joints = joints[i];
-      require_held(bend_block(file.robot, rows[i]), program.blocks[i], path, rows[i]);
+      require_held(bend_block(file.robot, rows[i]), file, program.blocks[i], path, rows[i]);
     }
   });
 }

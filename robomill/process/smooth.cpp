@@ -29,6 +29,10 @@ constexpr double chord_share = 0.1, turn_share = 0.05;
 /// … but not less: what a reader takes.
 constexpr double least_chord_m = 1e-9, least_turn_rad = 1e-9;
 
+/// Beside a singularity of the wrist through which a program leads, ways are taken up to this condition number, and the
+/// axis may leave the program's by this share of its tolerance; corners have the rest.
+constexpr double condition_beside = 1e5, tilt_share = 0.6;
+
 /// A machine with a program before it.
 struct Bench {
   const cell::Cell& cell;
@@ -52,10 +56,17 @@ std::array<bool, 6> prismatic_of(const cell::Cell& cell) {
   return prismatic;
 }
 
-path::PostureChoice posture_of(const Bench& bench) {
+/// @param beside  the machine that passes beside a singularity
+path::PostureChoice posture_of(const Bench& bench, const robot::Kinematics& beside, Progress& progress) {
   path::PostureOptions options = cell::posture_options(bench.cell, *bench.machine);
   options.free_gamma = bench.smoothing.free_gamma;
-  return path::choose_posture(bench.program, *bench.machine, options);
+  const path::SmoothingOptions& smoothing = bench.smoothing.options;
+  if (smoothing.method == path::Method::verified || smoothing.method == path::Method::optimal) {
+    options.beside = &beside;
+    options.max_axis_tilt_rad =
+        std::min(tilt_share * smoothing.axis_tolerance_rad, path::PostureOptions::most_tilt_rad);
+  }
+  return path::choose_posture(bench.program, *bench.machine, options, progress);
 }
 
 /// Calls f; an error that names no place is the program's.
@@ -72,14 +83,16 @@ auto located_in_program(const std::filesystem::path& program, F&& f) {
 }
 
 /// The machine, and its posture where none is given.
-void prepare(Bench& bench, const SmoothOptions& options) {
+void prepare(Bench& bench, const SmoothOptions& options, Progress& progress) {
   bench.machine = cell::kinematics(bench.cell);
   bench.prismatic = prismatic_of(bench.cell);
+  std::unique_ptr<robot::Kinematics> beside = cell::kinematics(bench.cell, condition_beside);
   if (options.posture) {
     bench.posture.posture = *options.posture;
   } else {
-    bench.posture = located_in_program(bench.path, [&] { return posture_of(bench); });
+    bench.posture = located_in_program(bench.path, [&] { return posture_of(bench, *beside, progress); });
   }
+  if (bench.posture.posture.beside_singularity) bench.machine = std::move(beside);
 }
 
 std::unique_ptr<path::SampleFile> open_output(const SmoothOptions& options, const Bench& bench) {
@@ -398,7 +411,7 @@ program::ProgramReading smoothed_reading(const cell::Cell& cell, const path::Smo
 SmoothResult smooth(program::Source& program, const std::filesystem::path& path, const cell::Cell& cell,
                     const path::SmoothingFile& smoothing, const SmoothOptions& options, Progress& progress) {
   Bench bench = {.cell = cell, .smoothing = smoothing, .program = program, .path = path};
-  prepare(bench, options);
+  prepare(bench, options, progress);
   SmoothResult result;
   result.smoothing = smoothing;
   result.posture = bench.posture;

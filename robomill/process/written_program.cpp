@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 
@@ -54,6 +55,26 @@ class ReadAgain {
     }
     return out;
   }
+  /// Puts places along the wanted program where they are in the program that is read.
+  void move(std::vector<path::AxisTilt>& tilts) const {
+    if (tilts.empty()) return;
+    std::vector<double> place(wanted_.blocks.size() + 1);
+    std::iota(place.begin(), place.end(), 0.0);
+    place = along(place);
+    const auto moved = [&](double t) {
+      const auto above = std::ranges::lower_bound(place, t) - place.begin();
+      const auto end = std::min<std::size_t>(static_cast<std::size_t>(above), place.size() - 1);
+      if (end == 0) return 0.0;
+      const double step = place[end] - place[end - 1];
+      return static_cast<double>(end) - (step > 0.0 ? std::clamp((place[end] - t) / step, 0.0, 1.0) : 0.0);
+    };
+    for (path::AxisTilt& tilt : tilts) {
+      for (double path::AxisTilt::*const at :
+           {&path::AxisTilt::from, &path::AxisTilt::full_from, &path::AxisTilt::full_to, &path::AxisTilt::to}) {
+        tilt.*at = moved(tilt.*at);
+      }
+    }
+  }
 
  private:
   static bool same_end(const program::Block& a, const program::Block& b) {
@@ -78,6 +99,7 @@ path::Posture posture_of(const SmoothResult& smoothed, const ReadAgain& written,
     for (std::size_t i = 0; i < gamma_offset_rad.size(); ++i) out.gamma_rad[i] += gamma_offset_rad[i];
     out.gamma_rad = written.along(out.gamma_rad);
   }
+  written.move(out.tilts);
   const std::optional<Eigen::VectorXd> joints = stand_at(
       cell.robot, robot::spherical_wrist(cell.robot.arm),
       {.tip_m = program.start.tip_m, .axis = program.start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);

@@ -13,13 +13,6 @@ constexpr double unlimited = 1e300;
 constexpr double antipodal = 1e-6;  // [rad] from half a turn: the great circle is no longer determined
 constexpr int most_halvings = 24;
 
-/// How far block i goes, in steps of the options.
-double steps_of(const Head& head, std::size_t block, const PostureOptions& options) {
-  const program::Pose &from = head.pose[block], &to = head.pose[block + 1];
-  return std::max(program::angle_between(from.axis, to.axis) / options.max_axis_step_rad,
-                  (to.tip_m - from.tip_m).norm() / options.max_tip_step_m);
-}
-
 std::size_t block_of(const Head& head, double t) {
   return std::min(static_cast<std::size_t>(t), head.line.size() - 1);
 }
@@ -51,6 +44,12 @@ Head read_head(program::Source& source, std::size_t max_blocks) {
   }
   source.rewind();
   return out;
+}
+
+double steps_of(const Head& head, std::size_t block, const PostureOptions& options) {
+  const program::Pose &from = head.pose[block], &to = head.pose[block + 1];
+  return std::max(program::angle_between(from.axis, to.axis) / options.max_axis_step_rad,
+                  (to.tip_m - from.tip_m).norm() / options.max_tip_step_m);
 }
 
 std::vector<double> stations(const Head& head, const PostureOptions& options) {

@@ -18,6 +18,9 @@ struct Head {
 /// Leaves the source at its beginning.
 [[nodiscard]] Head read_head(program::Source& source, std::size_t max_blocks);
 
+/// How far a block goes, in steps of the options.
+[[nodiscard]] double steps_of(const Head& head, std::size_t block, const PostureOptions& options);
+
 /// Places t along a head that are at most one step apart, in tip or axis; of each block's end only where that much has
 /// passed since the place before.
 [[nodiscard]] std::vector<double> stations(const Head& head, const PostureOptions& options);
@@ -51,6 +54,9 @@ struct Walk {
   robot::Position6 low = robot::Position6::Zero(), high = robot::Position6::Zero();  ///< of each joint up to there
   robot::Position6 last = robot::Position6::Zero();                                  ///< taken
 };
+[[nodiscard]] inline bool found(const Walk& walk) {
+  return walk.reach.status == robot::Reach::Status::found;
+}
 [[nodiscard]] Walk walk(const robot::Kinematics& kinematics, const Head& head, const std::vector<double>& along,
                         const std::vector<double>& gamma_rad, const robot::Position6& start,
                         const WalkOptions& options);
