@@ -83,7 +83,8 @@ void AptReader::take_circle() {
 // MOVARC/x,y,z,i,j,k,r,ANGLE,a and MOVARC/CENTER,x,y,z,AXIS,i,j,k,RADIUS,r
 void AptReader::take_arc() {
   if (circle_) reject_text("MOVARC", shown_, "follows another arc without a position between them");
-  const bool by_words = fields_.size() == 10 && fields_[0] == "CENTER" && fields_[4] == "AXIS" && fields_[8] == "RADIUS";
+  const bool by_words =
+      fields_.size() == 10 && fields_[0] == "CENTER" && fields_[4] == "AXIS" && fields_[8] == "RADIUS";
   const bool by_angle = fields_.size() == 9 && fields_[7] == "ANGLE";
   if (!by_words && !by_angle) {
     reject_text("MOVARC", shown_, "is not read", "Known are MOVARC/x,y,z,i,j,k,r,ANGLE,a and MOVARC/CENTER,…,AXIS,…");
@@ -159,8 +160,7 @@ void AptReader::check_radii(const Circle& circle, const Arc& arc) const {
   const double said_m = circle.radius_m.value_or(arc.begin_radius_m);
   if (!fits(arc.begin_radius_m, arc.end_radius_m) || !fits(arc.begin_radius_m, said_m)) {
     reject("CIRCLE", io::round_15(arc.begin_radius_m / unit_m()), unit_name(),
-           fmt::format("is the arc's radius where it begins; at its end it is {:.9g}{}",
-                       arc.end_radius_m / unit_m(),
+           fmt::format("is the arc's radius where it begins; at its end it is {:.9g}{}", arc.end_radius_m / unit_m(),
                        circle.radius_m ? fmt::format(", in the statement {:.9g}", said_m / unit_m()) : ""),
            "Is the position before it the arc's begin?");
   }
@@ -177,9 +177,7 @@ void AptReader::check_radii(const Circle& circle, const Arc& arc) const {
 void AptReader::choose_sense(const Circle& circle, Arc& arc, const Pose& end) const {
   if (!circle.angle_rad) return;
   constexpr double rounding_rad = 0.01;
-  const auto fits = [&](double sweep_rad) {
-    return std::abs(sweep_rad - std::abs(*circle.angle_rad)) <= rounding_rad;
-  };
+  const auto fits = [&](double sweep_rad) { return std::abs(sweep_rad - std::abs(*circle.angle_rad)) <= rounding_rad; };
   const Arc other = arc_about(circle.center_m, -circle.normal, pose_.tip_m, end.tip_m);
   const bool this_fits = fits(arc.sweep_rad);
   const bool other_fits = fits(other.sweep_rad);
@@ -204,7 +202,8 @@ void AptReader::go_round(Circle circle, const Pose& end, bool rapid) {
   choose_sense(circle, arc, end);
   if (circle.turns > 1.0) {
     if (arc.sweep_rad < whole_turn - 1e-6) {
-      reject("TIMES", circle.turns, "", "is read for whole turns alone", "Let the CAM system write an arc for each turn");
+      reject("TIMES", circle.turns, "", "is read for whole turns alone",
+             "Let the CAM system write an arc for each turn");
     }
     arc.sweep_rad *= circle.turns;
   }
@@ -219,8 +218,8 @@ void AptReader::go_round(Circle circle, const Pose& end, bool rapid) {
     if (circle.swept_rad > 0.0) {
       assume_once(Once::points,
                   {.what = fmt::format("Several positions on the circle of one CIRCLE/, from line {} on", line_),
-                       .taken = "points of one arc, as Creo writes them",
-                       .key = "a CIRCLE/ for each arc"});
+                   .taken = "points of one arc, as Creo writes them",
+                   .key = "a CIRCLE/ for each arc"});
     }
     circle.swept_rad += arc.sweep_rad;
     constexpr double rounding_rad = 0.01;
@@ -230,7 +229,8 @@ void AptReader::go_round(Circle circle, const Pose& end, bool rapid) {
     last_circle_ = circle;
   }
   made_ = Made::arc;
-  highest_m_ = std::max({highest_m_, end.tip_m.z(), arc.center_m.z() + arc.begin_radius_m * std::hypot(circle.normal.x(), circle.normal.y())});
+  highest_m_ = std::max({highest_m_, end.tip_m.z(),
+                         arc.center_m.z() + arc.begin_radius_m * std::hypot(circle.normal.x(), circle.normal.y())});
   begin_chords(arc, end, rapid);
 }
 
@@ -258,8 +258,7 @@ bool AptReader::advance() {
     at.tip_m = round_.arc.at(share);
     if (round_.begin.axis == round_.end.axis) at.axis = round_.end.axis;
   }
-  move(round_.kind, at, round_.duration_s,
-       {.tip_m = round_.arc.deviation_m(round_.count), .axis_rad = 0.0});
+  move(round_.kind, at, round_.duration_s, {.tip_m = round_.arc.deviation_m(round_.count), .axis_rad = 0.0});
   return true;
 }
 

@@ -137,7 +137,8 @@ TEST(AptArcs, Movarc) {
 TEST(AptArcs, Catia) {
   const std::string head = "RAPID\nGOTO / 10.00000, 0.00000, 5.00000\nFEDRAT/ 300.0000,MMPM\n";
   const std::string curve =
-      "TLON,GOFWD/ (CIRCLE/     0.00000,     0.00000,     5.00000,$\n   10.00000),ON,(LINE/     0.00000,     0.00000,   "
+      "TLON,GOFWD/ (CIRCLE/     0.00000,     0.00000,     5.00000,$\n   10.00000),ON,(LINE/     0.00000,     0.00000,  "
+      " "
       "  5.00000,$\n     0.00000,     10.00000,     5.00000)\n";
   const Program left = read(head + "INDIRV/  0.00000,  1.00000,  0.00000\n" + curve);
   expect_way(left, 5.0 * pi, 300.0);
@@ -147,8 +148,7 @@ TEST(AptArcs, Catia) {
   const Program whole =
       read(head + "INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,5,10),ON,2,INTOF,(LINE/0,0,5,10,0,5)\nGOTO/0,0,5\n");
   expect_way(whole, 20.0 * pi + 10.0, 300.0);
-  const Program aside =
-      read(head + "INDIRV/0,0,1\nTLON,GOFWD/(CIRCLE/CANON,0,0,5,0,1,0,10),ON,(LINE/0,0,5,0,0,15)\n");
+  const Program aside = read(head + "INDIRV/0,0,1\nTLON,GOFWD/(CIRCLE/CANON,0,0,5,0,1,0,10),ON,(LINE/0,0,5,0,0,15)\n");
   expect_way(aside, 5.0 * pi, 300.0);
   expect_rejected(head + curve, "has no direction before it");
   expect_rejected(head + "INDIRV/1,0,0\n" + curve, "begins across its direction");
@@ -157,8 +157,7 @@ TEST(AptArcs, Catia) {
 
 // A tool axis that changes along an arc does so evenly.
 TEST(AptArcs, TurnsTheAxisEvenly) {
-  const Program program =
-      read("GOTO/10,0,0,0,0,1\nFEDRAT/300\nCIRCLE/0,0,0,0,0,1\nGOTO/0,10,0,0,.6,.8\n");
+  const Program program = read("GOTO/10,0,0,0,0,1\nFEDRAT/300\nCIRCLE/0,0,0,0,0,1\nGOTO/0,10,0,0,.6,.8\n");
   const double whole_rad = std::atan2(0.6, 0.8);
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
     const double share = static_cast<double>(i + 1) / static_cast<double>(program.blocks.size());

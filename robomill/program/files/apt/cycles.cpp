@@ -112,7 +112,8 @@ void AptReader::choose_cycle(std::string_view name) {
   cycle_.how.feeds_out = name == "TAP" || name == "BORE" || name == "REAM";
   for (std::size_t i = 1; i < fields_.size(); ++i) {
     const auto* const variant = std::ranges::find(cycle_variants, fields_[i], &CycleVariant::word);
-    if (variant == cycle_variants.end() || fields_[i - 1] == "RTRCTO" || (i > 1 && fields_[i - 2] == "RTRCTO")) continue;
+    if (variant == cycle_variants.end() || fields_[i - 1] == "RTRCTO" || (i > 1 && fields_[i - 2] == "RTRCTO"))
+      continue;
     if (!variant->read) {
       reject_text("CYCLE", fields_[i], "is not read: the tool would leave the hole in another way",
                   "Let the CAM system write cycles as straight moves");
@@ -237,8 +238,9 @@ void AptReader::set_cycle(const CycleWords& words) {
   }
   if (!pecks) return;
   remarks_.assume({.what = "Pecks of CYCLE/DEEP and CYCLE/BRKCHP",
-                   .taken = "from RAPTO's height on, back to 0.254 mm above what is drilled, as LinuxCNC's; a setting of "
-                            "the machine elsewhere",
+                   .taken =
+                       "from RAPTO's height on, back to 0.254 mm above what is drilled, as LinuxCNC's; a setting of "
+                       "the machine elsewhere",
                    .key = as_straight_moves});
 }
 
@@ -252,9 +254,8 @@ void AptReader::set_cycle_feed(const CycleWords& words) {
   }
   if (!words.feed) return;
   check_feed("CYCLE", *words.feed);
-  cycle_.feed = FeedRate{.value = *words.feed,
-                         .inches = words.unit.starts_with('I'),
-                         .per_revolution = words.unit.ends_with('R')};
+  cycle_.feed = FeedRate{
+      .value = *words.feed, .inches = words.unit.starts_with('I'), .per_revolution = words.unit.ends_with('R')};
 }
 
 void AptReader::feed_in_cycle(const FeedRate& feed) {
@@ -269,9 +270,9 @@ void AptReader::feed_in_cycle(const FeedRate& feed) {
   cycle_cut_line_ = line_;
   moved_since_cut_line_ = 0;
   assume_once(Once::cycle_end,
-                  {.what = fmt::format("End of CYCLE/{} (line {}) without CYCLE/OFF", cycle_.name, cycle_.line),
-                   .taken = fmt::format("the FEDRAT of line {}, which is not the cycle's", line_),
-                   .key = "CYCLE/OFF"});
+              {.what = fmt::format("End of CYCLE/{} (line {}) without CYCLE/OFF", cycle_.name, cycle_.line),
+               .taken = fmt::format("the FEDRAT of line {}, which is not the cycle's", line_),
+               .key = "CYCLE/OFF"});
 }
 
 DrilledHole AptReader::hole_of(const Pose& hole) {
@@ -283,18 +284,18 @@ DrilledHole AptReader::hole_of(const Pose& hole) {
   const double initial_m = cycle_.has_initial ? (cycle_.initial_m - hole.tip_m).dot(hole.axis) : 0.0;
   if (needs_initial) {
     assume_once(cycle_.start_m ? Once::return_height : Once::start_height,
-                  {.what = fmt::format("Height that CYCLE/{} {} (line {})", cycle_.name,
-                                         cycle_.start_m ? "goes back to" : "begins at", cycle_.line),
-                     .taken = "where the tool was before the cycle",
-                     .key = cycle_.start_m ? "RTRCTO or RETURN" : "RAPTO or CLEAR"});
+                {.what = fmt::format("Height that CYCLE/{} {} (line {})", cycle_.name,
+                                     cycle_.start_m ? "goes back to" : "begins at", cycle_.line),
+                 .taken = "where the tool was before the cycle",
+                 .key = cycle_.start_m ? "RTRCTO or RETURN" : "RAPTO or CLEAR"});
   }
   DrilledHole out = {.point_m = hole.tip_m, .axis = hole.axis, .bottom_m = -cycle_.depth_m};
   out.start_m = cycle_.start_m.value_or(initial_m);
   const bool to_start = cycle_.returns_to_start || to_start_;
   out.return_m = to_start ? out.start_m : std::max(cycle_.return_m.value_or(initial_m), out.start_m);
   if (!(out.start_m > out.bottom_m)) {
-    reject("CYCLE", std::nullopt, "", fmt::format("{} of line {} begins below this hole's bottom", cycle_.name,
-                                                  cycle_.line));
+    reject("CYCLE", std::nullopt, "",
+           fmt::format("{} of line {} begins below this hole's bottom", cycle_.name, cycle_.line));
   }
   return out;
 }

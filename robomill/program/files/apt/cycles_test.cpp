@@ -102,7 +102,8 @@ TEST(AptCycles, SolidWorksCamPecks) {
 TEST(AptCycles, AlongAnyAxis) {
   const Program program = read(
       "UNIT/MM\nTRNTYP/WORLD,0,0,0\nCSYS/0,0,-1.,0,-1.,0,0,0,0,1.,0,0\nRAPID/\nGOTO/-25.,70.,-30.,-1.,0,0\nCYCLE/INIT\n"
-      "CYCLE/DRILL,FEDTO,6.,MMPM,180.,RAPTO,3.,RTRCTO,25.\nGOTO/0,70.,-30.,-1.,0,0\nGOTO/0,50.,-30.,-1.,0,0\nCYCLE/OFF\n"
+      "CYCLE/DRILL,FEDTO,6.,MMPM,180.,RAPTO,3.,RTRCTO,25.\nGOTO/0,70.,-30.,-1.,0,0\nGOTO/0,50.,-30.,-1.,0,0\nCYCLE/"
+      "OFF\n"
       "TRNTYP/WORLD,0,0,0\nCSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0\nRAPID/\nGOTO/5.,5.,25.\n");
   expect_blocks(program, {{rapid, {-3.0, 70.0, -30.0}},
                           {feed, {6.0, 70.0, -30.0}, 3.0},
@@ -124,7 +125,8 @@ TEST(AptCycles, OtherWriters) {
   const std::string hole = "GOTO / 0.0, 0.0, 0.0\nCYCLE / OFF\n";
   expect_blocks(read(at + "CYCLE / DRILL, DEPTH, 8.0, MMPM, 300.0, CLEAR, 2.0, RETURN, 10.0\n" + hole), wanted);
   expect_blocks(read(at + "CYCLE / DRILL, DEPTH, 8.0, $\nMMPM, 300.0, CLEAR, 5.0, RAPTO, 3.0\n" + hole), wanted);
-  expect_blocks(read(at + "CYCLE/DRILL,RAPTO,2.0000,FEDTO,-8.0000,RTRCTO,10.0000,MANUAL,MMPM,300.0000\n" + hole), wanted);
+  expect_blocks(read(at + "CYCLE/DRILL,RAPTO,2.0000,FEDTO,-8.0000,RTRCTO,10.0000,MANUAL,MMPM,300.0000\n" + hole),
+                wanted);
   expect_blocks(read(at + "CYCLE/DRILL, 8, MMPM, 300, 5, RAPTO, 3\nFEDRAT/300, MMPM\n" + hole), wanted);
   expect_blocks(read(at + "CYCLE/DRILL,8.0,300.0,MMPM,2.0\n" + hole), wanted);
   expect_blocks(read(at + "FEDRAT/300,MMPM\nCYCLE/DRILL,DEPTH,8,CLEAR,2\n" + hole), wanted);
@@ -141,7 +143,9 @@ TEST(AptCycles, TapsReamsAndBores) {
   const std::string hole = "GOTO/0,0,0\nCYCLE/OFF\n";
   const Program tap = read(at + "CYCLE/TAP,FEDTO,8,MMPR,1.25,RAPTO,2,RTRCTO,10\n" + hole);
   const double in_s = 10.0 / (1.25 * 500.0) * 60.0;
-  expect_blocks(tap, {{rapid, {0.0, 0.0, 2.0}}, {feed, {0.0, 0.0, -8.0}, in_s}, {feed, {0.0, 0.0, 2.0}, in_s},
+  expect_blocks(tap, {{rapid, {0.0, 0.0, 2.0}},
+                      {feed, {0.0, 0.0, -8.0}, in_s},
+                      {feed, {0.0, 0.0, 2.0}, in_s},
                       {rapid, {0.0, 0.0, 10.0}}});
   EXPECT_EQ(tap.blocks[1].spindle, Spindle::clockwise);
   EXPECT_EQ(tap.blocks[2].spindle, Spindle::counterclockwise);
@@ -149,8 +153,11 @@ TEST(AptCycles, TapsReamsAndBores) {
   const Program threads = read(at + "CYCLE/TAP,DEPTH,8,TPI,20,CLEAR,2,RETURN,10\n" + hole);
   EXPECT_NEAR(threads.blocks[1].duration_s, 10.0 / (1.27 * 500.0) * 60.0, 1e-9);
   const Program ream = read(at + "CYCLE/REAM,DEPTH,8,MMPM,60,CLEAR,2,RETURN,10,DWELL,1\n" + hole);
-  expect_blocks(ream, {{rapid, {0.0, 0.0, 2.0}}, {feed, {0.0, 0.0, -8.0}, 10.0}, {pause, {0.0, 0.0, -8.0}, 1.0},
-                       {feed, {0.0, 0.0, 2.0}, 10.0}, {rapid, {0.0, 0.0, 10.0}}});
+  expect_blocks(ream, {{rapid, {0.0, 0.0, 2.0}},
+                       {feed, {0.0, 0.0, -8.0}, 10.0},
+                       {pause, {0.0, 0.0, -8.0}, 1.0},
+                       {feed, {0.0, 0.0, 2.0}, 10.0},
+                       {rapid, {0.0, 0.0, 10.0}}});
   const Program drag = read(at + "CYCLE/BORE,DRAG,RAPTO,2,FEDTO,-8,RTRCTO,10,MMPM,60\n" + hole);
   ASSERT_EQ(drag.blocks.size(), 3U);
   EXPECT_EQ(drag.blocks[2].spindle, Spindle::off);
@@ -235,11 +242,10 @@ TEST(AptFrames, RetractsAndTheMachinesHome) {
   expect_blocks(read(cut + "RETRCT\nRAPID\nGOTO/20,0,50\n"),
                 {{feed, {10.0, 0.0, 0.0}, 10.0}, {rapid, {10.0, 0.0, 50.0}}, {rapid, {20.0, 0.0, 50.0}}});
   EXPECT_EQ(read(cut + "GOHOME\nFINI\n").blocks.size(), 1U);
-  expect_blocks(read(cut + "GOHOME\nRAPID\nGOTO/20,0,5\nGOTO/20,0,0\n"),
-                {{feed, {10.0, 0.0, 0.0}, 10.0},
-                 {rapid, {10.0, 0.0, 5.0}},
-                 {rapid, {20.0, 0.0, 5.0}},
-                 {feed, {20.0, 0.0, 0.0}, 5.0}});
+  expect_blocks(read(cut + "GOHOME\nRAPID\nGOTO/20,0,5\nGOTO/20,0,0\n"), {{feed, {10.0, 0.0, 0.0}, 10.0},
+                                                                          {rapid, {10.0, 0.0, 5.0}},
+                                                                          {rapid, {20.0, 0.0, 5.0}},
+                                                                          {feed, {20.0, 0.0, 0.0}, 5.0}});
   expect_blocks(read(cut + "GOHOME/0,0,90\n"), {{feed, {10.0, 0.0, 0.0}, 10.0}, {rapid, {0.0, 0.0, 90.0}}});
   expect_rejected(cut + "GOHOME\nGOTO/20,0,0\n", "is a move at feed after GOHOME in line 5");
   expect_rejected("GOTO/0,0,0\nRETRCT\nCIRCLE/0,0,0,0,0,1\nGOTO/1,0,0\n", "is an arc after RETRCT in line 2");

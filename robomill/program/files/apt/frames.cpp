@@ -55,16 +55,15 @@ void AptReader::take_system() {
   if (!(*frame == base)) {
     frame_ = Frame{.rotation = base.rotation.transpose() * frame->rotation,
                    .origin_m = base.rotation.transpose() * (frame->origin_m - base.origin_m)};
-    assume_once(Once::systems,
-                  {.what = fmt::format("Positions behind another MSYS, from line {} on", line_),
-                     .taken = "moved into the system of the first one",
-                     .key = "a file for each MSYS"});
+    assume_once(Once::systems, {.what = fmt::format("Positions behind another MSYS, from line {} on", line_),
+                                .taken = "moved into the system of the first one",
+                                .key = "a file for each MSYS"});
   }
   plain_axis_ = frame_ ? Vector3d(frame_->rotation.col(2)) : Vector3d(Vector3d::UnitZ());
 }
 
-// SolidWorks CAM: rows of a matrix whose columns are the setup's X, Y, Z and an origin. Under TRNTYP/WORLD positions and
-// axes count in one system for all setups; Z is their tool's axis.
+// SolidWorks CAM: rows of a matrix whose columns are the setup's X, Y, Z and an origin. Under TRNTYP/WORLD positions
+// and axes count in one system for all setups; Z is their tool's axis.
 void AptReader::take_setup_system() {
   const std::vector<double> numbers = all_numbers();
   if (numbers.size() != 12 || fields_.size() != 12) {

@@ -111,8 +111,8 @@ void AptReader::take_compensation() {
   if (!off) {
     assume_once(Once::compensation,
                 {.what = fmt::format("Path under CUTCOM, from line {} on", line_),
-                     .taken = "that of the tool's centre: the machine compensates for a worn tool alone",
-                     .key = "CUTCOM/OFF"});
+                 .taken = "that of the tool's centre: the machine compensates for a worn tool alone",
+                 .key = "CUTCOM/OFF"});
   }
   skip_statement();
 }

@@ -93,11 +93,11 @@ class AptRewriter final : public Rewriter {
   std::vector<Field> fields_;
   std::string_view joined_text_;
   std::optional<Template> feed_template_, speed_template_;
-  double speed_rad_per_s_ = 0.0;       ///< that holds behind what has been composed
-  bool says_axes_ = false;             ///< some position comes with its axis
-  std::optional<bool> multax_;         ///< MULTAX is on; none: not said yet
+  double speed_rad_per_s_ = 0.0;                     ///< that holds behind what has been composed
+  bool says_axes_ = false;                           ///< some position comes with its axis
+  std::optional<bool> multax_;                       ///< MULTAX is on; none: not said yet
   Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ();  ///< as written last behind what has been composed
-  Motions motions_;                    ///< of the statement composed last
+  Motions motions_;                                  ///< of the statement composed last
   std::size_t last_opener_ = none, last_cycle_ = none;
   std::unordered_map<std::size_t, std::vector<std::size_t>> arcs_;  ///< the statements that end the arcs of an opener
   std::vector<std::size_t> openers_, cycles_;  ///< of each statement: what gives its circle, the cycle that is on

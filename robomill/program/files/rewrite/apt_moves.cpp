@@ -104,8 +104,8 @@ void AptRewriter::set_last_chord(std::size_t index, const Pose& target, const Po
   const Digits digits = position_digits(unit_m(index));
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    const Coordinate to = coordinate(io::parse_number(fields_[i].text), target.tip_m[axis], at.tip_m[axis], false,
-                                     digits, false);
+    const Coordinate to =
+        coordinate(io::parse_number(fields_[i].text), target.tip_m[axis], at.tip_m[axis], false, digits, false);
     if (to.act != Coordinate::Act::keep) set_field(statement, fields_[i], to.text, composed);
   }
   if (count_numbers() >= 6) {

@@ -17,13 +17,12 @@ struct Case {
   std::string name = "part.apt";
   Program read = read_program_text(text, name);
   Program wanted = read;
-  [[nodiscard]] std::string rewrite() const {
-    return rewrite_program_text(text, name, {}, read, wanted, {}).text;
-  }
+  [[nodiscard]] std::string rewrite() const { return rewrite_program_text(text, name, {}, read, wanted, {}).text; }
 };
 
 const std::string mill =
-    "UNIT/MM\r\nTRNTYP/WORLD,0,0,0\r\nCSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0\r\nSPINDL/8000,RPM,CLW\r\nRAPID/\r\nGOTO/10.,0,0\r\n"
+    "UNIT/MM\r\nTRNTYP/WORLD,0,0,0\r\nCSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0\r\nSPINDL/8000,RPM,CLW\r\nRAPID/\r\nGOTO/"
+    "10.,0,0\r\n"
     "CUTCOM/LEFT\r\nFEDRAT/600.,MMPM\r\nCIRCLE/0,0,0,0,0,1.\r\nGOTO/0,-10.,0\r\nGOTO/0,-20.,0\r\nFINI\r\n";
 const std::string drill =
     "UNIT/MM\nSPINDL/3000,RPM,CLW\nRAPID/\nGOTO/0,0,25.\nCYCLE/INIT\n"
