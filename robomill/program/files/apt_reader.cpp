@@ -411,6 +411,11 @@ void AptReader::go_straight(const Pose& end, bool rapid) {
     return;
   }
   if (!moves_to(end)) return;
+  constexpr double nearly = -0.99999;  // within 0.3 deg of half a circle
+  if (rapid && setup_x_ && pose_.axis.dot(end.axis) < nearly) {
+    turn_over(end);
+    return;
+  }
   check_tool();
   const double turn_rad = turn_to(end.axis);
   if (rapid) {

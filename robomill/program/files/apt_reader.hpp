@@ -81,6 +81,7 @@ class AptReader final : public ProgramReader {
     return_height,
     cycle_end,
     compensation,
+    turned_over,
     last  ///< how many
   };
   void assume_once(Once what, Assumption assumption);
@@ -132,6 +133,8 @@ class AptReader final : public ProgramReader {
   void lose();
   /// A rapid after a position that was not known: up, across, down.
   void come_back(const Pose& end);
+  /// A rapid into a setup that has turned the part over, about the setup's X.
+  void turn_over(const Pose& end);
 
   // apt/arcs.cpp
   /// The circle that the next position ends an arc of.
@@ -212,12 +215,13 @@ class AptReader final : public ProgramReader {
   Made made_ = Made::straight;
   std::array<bool, static_cast<std::size_t>(Once::last)> assumed_ = {};
 
-  std::string system_;                 ///< the coordinate system's statement, where its numbers are not known
-  std::optional<Frame> base_system_;   ///< of the first MSYS: W
-  std::optional<Frame> setup_system_;  ///< of the first CSYS
-  std::string transformation_;         ///< the statement TRNTYP
-  bool setup_turned_ = false;          ///< the tool's axis of the setup is not Z
-  std::optional<Frame> frame_;         ///< of the positions in W; none: W
+  std::string system_;                      ///< the coordinate system's statement, where its numbers are not known
+  std::optional<Frame> base_system_;        ///< of the first MSYS: W
+  std::optional<Eigen::Vector3d> setup_x_;  ///< of the last CSYS
+  std::optional<Frame> setup_system_;       ///< of the first CSYS
+  std::string transformation_;              ///< the statement TRNTYP
+  bool setup_turned_ = false;               ///< the tool's axis of the setup is not Z
+  std::optional<Frame> frame_;              ///< of the positions in W; none: W
   std::optional<Eigen::Vector3d> plain_axis_;
   bool plain_axis_stays_ = false;  ///< … behind positions that give theirs
   std::vector<std::string> matrix_rows_, first_matrix_rows_;

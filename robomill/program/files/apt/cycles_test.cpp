@@ -216,6 +216,18 @@ TEST(AptFrames, SetupsCountInOneSystem) {
   expect_rejected("MODE/INCR\n", "makes positions steps");
 }
 
+// The part turned over: the tool turns by half a circle at rapid.
+TEST(AptFrames, TurnsOverBetweenSetups) {
+  const std::string above = "UNIT/MM\nTRNTYP/WORLD,0,0,0\nCSYS/1.,0,0,0,0,1.,0,0,0,0,1.,0\nRAPID/\nGOTO/10.,0,25.\n";
+  const std::string below = "CSYS/-1.,0,0,0,0,1.,0,0,0,0,-1.,0\nRAPID/\nGOTO/10.,0,-55.,0,0,-1.\n";
+  const Program program = read(above + below);
+  expect_blocks(program, {{rapid, {10.0, 0.0, -15.0}}, {rapid, {10.0, 0.0, -55.0}}});
+  EXPECT_EQ(program.blocks[0].end.axis, -Vector3d::UnitX());
+  EXPECT_EQ(program.blocks[1].end.axis, -Vector3d::UnitZ());
+  EXPECT_EQ(program.assumed.size(), 1U);
+  expect_rejected(above + "FEDRAT/60.,MMPM\nGOTO/10.,0,-55.,0,0,-1.\n", "turns by half a circle in one move");
+}
+
 // A point of the second system, by hand: its X is the first one's Y, its Y the first one's -X.
 TEST(AptFrames, MovesIntoTheFirstMsys) {
   const std::string first = "MSYS/10,20,30, 1,0,0, 0,1,0\nFEDRAT/60\nGOTO/0,0,0,0,0,1\n";

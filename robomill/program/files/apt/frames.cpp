@@ -75,6 +75,7 @@ void AptReader::take_setup_system() {
     reject_text("CSYS", shown_, "is a mirrored system", "Let the CAM system write right-handed ones");
   }
   skip_statement();
+  setup_x_ = frame.rotation.col(0);
   if (!start_) setup_system_ = frame;
   const bool world = transformation_.starts_with("TRNTYP/WORLD");
   if (!setup_system_) {
@@ -194,6 +195,19 @@ void AptReader::come_back(const Pose& end) {
   steps_.push_back({.tip_m = lifted(end.tip_m), .axis = end.axis});
   steps_.push_back({.tip_m = end.tip_m});
   highest_m_ = height_m;
+  begin_steps();
+}
+
+void AptReader::turn_over(const Pose& end) {
+  check_tool();
+  made_ = Made::moves;
+  assume_once(Once::turned_over,
+              {.what = fmt::format("Turn of the tool by half a circle into another CSYS, in line {}", line_),
+               .taken = "a rapid about the setup's X; the part may be clamped anew there",
+               .key = "a file for each setup"});
+  steps_.clear();
+  steps_.push_back({.tip_m = 0.5 * (pose_.tip_m + end.tip_m), .axis = *setup_x_});
+  steps_.push_back({.tip_m = end.tip_m, .axis = end.axis});
   begin_steps();
 }
 
