@@ -139,7 +139,8 @@ Verb smooth_verb() {
       .example = "smooth part.ngc --cell cell.toml -o trajectory.csv --report smooth.html",
       .readme = "robomill/path/README.md",
       .input =
-          file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls, .csv; or a job.toml", {"program"}, true),
+          file_option("program", "an NC program: .ngc .nc .gcode, .apt .cls .cl .ncl .aptsource, .csv; or a job.toml",
+                      {"program"}, true),
       .output = "trajectory.csv",
       .report = &page::Report::smooth,
       .options = {smooth_cell(), word_option("method", "method (default: the cell's)", words_of(path::method_names)),

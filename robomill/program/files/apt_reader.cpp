@@ -73,6 +73,31 @@ bool is_text(std::string_view line) {
   return std::ranges::find(texts, word) != texts.end();
 }
 
+/// A comment that is data of CATIA: the head of a matrix, or one of its rows.
+bool is_matrix_comment(std::string_view line) {
+  const std::string_view text = io::trimmed(line);
+  if (!text.starts_with("$$")) return false;
+  if (text.substr(2).starts_with("*CATIA0")) return true;
+  std::size_t numbers = 0;
+  for (std::size_t at = 2; at < text.size();) {
+    if (is_blank(text[at])) {
+      ++at;
+      continue;
+    }
+    std::size_t end = at;
+    while (end < text.size() && !is_blank(text[end])) ++end;
+    if (numbers == 4 || !io::parse_number(text.substr(at, end - at))) return false;
+    ++numbers;
+    at = end;
+  }
+  return numbers == 4;
+}
+
+/// Statements behind which positions may still lie on the circle before them.
+bool keeps_circle(std::string_view word) {
+  return word == "FEDRAT" || word == "SPINDL" || word == "COOLNT";
+}
+
 }  // namespace
 
 // $$ begins a comment; what stands behind one $ does not count, and the statement goes on.
@@ -80,7 +105,20 @@ ProgramReader::Part AptReader::part_of(std::string_view line, char, bool continu
   const std::size_t dollar = line.find('$');
   if (dollar == std::string_view::npos || (!continued && is_text(line))) return {.text = line};
   const bool comment = dollar + 1 < line.size() && line[dollar + 1] == '$';
+  if (comment && !continued && is_matrix_comment(line)) return {.text = line};
   return {.text = line.substr(0, dollar), .continues = !comment};
+}
+
+AptReader::Modes AptReader::modes() const {
+  Modes out = {.inches = inches_,
+               .feed = feed_.value,
+               .feed_in_inches = feed_.inches,
+               .feed_per_revolution = feed_.per_revolution,
+               .plain_axis = plain_axis_,
+               .moved_frame = frame_.has_value(),
+               .made = made_};
+  if (cycle_.on) out.cycle_feed = cycle_.feed;
+  return out;
 }
 
 void AptReader::split(std::string_view statement) {
@@ -108,29 +146,70 @@ void AptReader::split(std::string_view statement) {
 }
 
 const std::vector<AptReader::Statement>& AptReader::statements() {
-  static const std::vector<Statement> known = {
-      {"GODLTA", &AptReader::take_godlta}, {"FROM", &AptReader::take_from},      {"RAPID", &AptReader::take_rapid},
-      {"FEDRAT", &AptReader::take_feed},   {"UNITS", &AptReader::take_units},    {"SPINDL", &AptReader::take_spindle},
-      {"DELAY", &AptReader::take_delay},   {"MSYS", &AptReader::take_system},    {"CUTCOM", &AptReader::take_switch},
-      {"CYCLE", &AptReader::take_switch},  {"TRACUT", &AptReader::take_switch},  {"FINI", &AptReader::take_end},
-      {"MULTAX", &AptReader::take_known},  {"COOLNT", &AptReader::take_coolant}, {"STOP", &AptReader::take_stop},
-      {"OPSTOP", &AptReader::take_stop},   {"LOADTL", &AptReader::take_tool},    {"TURRET", &AptReader::take_tool}};
+  static const std::vector<Statement> known = {{"GODLTA", &AptReader::take_godlta},
+                                               {"FROM", &AptReader::take_from},
+                                               {"RAPID", &AptReader::take_rapid},
+                                               {"FEDRAT", &AptReader::take_feed},
+                                               {"CIRCLE", &AptReader::take_circle},
+                                               {"MOVARC", &AptReader::take_arc},
+                                               {"INDIRV", &AptReader::take_direction},
+                                               {"INDIRP", &AptReader::take_direction},
+                                               {"TLON,GOFWD", &AptReader::take_curve},
+                                               {"CYCLE", &AptReader::take_cycle},
+                                               {"SPINDL", &AptReader::take_spindle},
+                                               {"COOLNT", &AptReader::take_coolant},
+                                               {"UNITS", &AptReader::take_units},
+                                               {"UNIT", &AptReader::take_units},
+                                               {"MODE", &AptReader::take_mode},
+                                               {"DELAY", &AptReader::take_delay},
+                                               {"MSYS", &AptReader::take_system},
+                                               {"CSYS", &AptReader::take_setup_system},
+                                               {"TRNTYP", &AptReader::take_transformation},
+                                               {"CUTCOM", &AptReader::take_compensation},
+                                               {"TRACUT", &AptReader::take_tracut},
+                                               {"ROTABL", &AptReader::take_shift},
+                                               {"ROTATE", &AptReader::take_shift},
+                                               {"ROTHED", &AptReader::take_shift},
+                                               {"TRANS", &AptReader::take_shift},
+                                               {"ORIGIN", &AptReader::take_shift},
+                                               {"CLRSRF", &AptReader::take_clearance},
+                                               {"CLEARP", &AptReader::take_clearance},
+                                               {"RETRCT", &AptReader::take_retract},
+                                               {"GOHOME", &AptReader::take_home},
+                                               {"LOADTL", &AptReader::take_tool},
+                                               {"TURRET", &AptReader::take_tool},
+                                               {"LOAD", &AptReader::take_load},
+                                               {"TOOLPATH", &AptReader::take_tool_path},
+                                               {"STOP", &AptReader::take_stop},
+                                               {"OPSTOP", &AptReader::take_stop},
+                                               {"MULTAX", &AptReader::take_known},
+                                               {"FINI", &AptReader::take_end}};
   return known;
 }
 
 void AptReader::read(std::string_view statement) {
   split(statement);
   if (text_.empty()) return;
+  made_ = Made::straight;
   if (word_ == "GOTO") {
     take_goto();
     return;
   }
   shown_ = printable(io::trimmed(statement), shown_letters);
+  if (!keeps_circle(word_)) last_circle_.reset();
   for (const Statement& known : statements()) {
     if (word_ == known.word) {
       (this->*known.take)();
       return;
     }
+  }
+  if (text_.starts_with("$$")) {
+    take_matrix_comment();
+    return;
+  }
+  if (std::string_view("+-.0123456789").find(text_.front()) != std::string_view::npos &&
+      text_.find(',') != std::string::npos) {
+    reject_text({}, shown_, "has numbers without a word", "Let the CAM system write each position as GOTO/");
   }
   // CATIA writes TLON,GOFWD/…: each of the words may move.
   std::string_view rest = word_;
@@ -172,22 +251,79 @@ void AptReader::take_numbers(std::size_t few, std::size_t many) {
          "A position, or a position and the tool's axis");
 }
 
+double AptReader::unit_m() const {
+  return inches_ ? units::inch : units::mm;
+}
+
+bool AptReader::is_word(std::size_t field) const {
+  return field < fields_.size() && !fields_[field].empty() && fields_[field].front() >= 'A' &&
+         fields_[field].front() <= 'Z';
+}
+
+std::vector<double> AptReader::all_numbers() const {
+  std::vector<double> numbers;
+  for (std::string_view field : fields_) {
+    // (PLANE/0 and 50)
+    if (const std::size_t slash = field.rfind('/'); slash != std::string_view::npos) field.remove_prefix(slash + 1);
+    while (field.ends_with(')')) field.remove_suffix(1);
+    const std::optional<double> number = io::parse_number(field);
+    if (number && std::isfinite(*number)) numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+void AptReader::take_position() {
+  constexpr std::size_t with_axis = 6;
+  numbers_.clear();
+  for (const std::string_view field : fields_) {
+    numbers_.push_back(number_of(field));
+    if (numbers_.size() > 4 * with_axis) break;
+  }
+  const std::size_t count = numbers_.size();
+  if (count == 3 || count == with_axis) return;
+  // A direction or the contact's normal behind the axis.
+  if (count == 9 || count == 12) {
+    const double length = Eigen::Vector3d(numbers_[3], numbers_[4], numbers_[5]).norm();
+    if (std::abs(length - 1.0) <= 1e-3) {
+      numbers_.resize(with_axis);
+      assume_once(Once::numbers,
+                  {.what = fmt::format("Numbers behind the tool's axis in GOTO/, from line {} on", line_),
+                   .taken = "left out: the tip's position and its axis alone count",
+                   .key = "GOTO/x,y,z,i,j,k"});
+      return;
+    }
+  }
+  reject(std::string(word_), std::nullopt, "", fmt::format("has {} numbers; must have 3 or 6", fields_.size()),
+         "A position, or a position and the tool's axis");
+}
+
 Eigen::Vector3d AptReader::position_of_numbers() const {
   static constexpr std::array<const char*, 3> names = {"x", "y", "z"};
-  const double unit_m = inches_ ? units::inch : units::mm;
   Eigen::Vector3d position;
   for (std::size_t i = 0; i < 3; ++i) {
-    position[static_cast<Eigen::Index>(i)] = numbers_[i] * unit_m;
-    check_coordinate(names[i], numbers_[i] * unit_m, numbers_[i], unit_name());
+    position[static_cast<Eigen::Index>(i)] = numbers_[i] * unit_m();
+    check_coordinate(names[i], numbers_[i] * unit_m(), numbers_[i], unit_name());
   }
   return position;
 }
 
+Pose AptReader::pose_of_numbers() {
+  Pose pose = {.tip_m = position_of_numbers(), .axis = plain_axis_.value_or(pose_.axis)};
+  if (frame_) pose.tip_m = frame_->rotation * pose.tip_m + frame_->origin_m;
+  if (numbers_.size() >= 6) {
+    const Eigen::Vector3d axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
+    pose.axis = frame_ ? (frame_->rotation * axis).normalized() : axis;
+    if (!plain_axis_stays_) plain_axis_.reset();
+  } else if (setup_turned_) {
+    reject(std::string(word_), std::nullopt, "", "gives no tool axis where CSYS turns it",
+           "Give the axis with each GOTO/: x, y, z, i, j, k");
+  }
+  return pose;
+}
+
 void AptReader::take_goto() {
-  take_numbers(3, 6);
-  Pose end = {.tip_m = position_of_numbers(), .axis = pose_.axis};
-  if (numbers_.size() == 6) end.axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
-  go(end);
+  take_position();
+  go(pose_of_numbers());
 }
 
 void AptReader::take_godlta() {
@@ -195,11 +331,15 @@ void AptReader::take_godlta() {
   if (!start_) {
     reject("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
   }
+  if (cycle_.on && !rapid_) {
+    reject("GODLTA", std::nullopt, "", "is a step to a hole of a drilling cycle", "Give holes by GOTO/");
+  }
   Pose end = pose_;
   if (numbers_.size() == 3) {
-    end.tip_m += position_of_numbers();
+    const Eigen::Vector3d step_m = position_of_numbers();
+    end.tip_m += frame_ ? frame_->rotation * step_m : step_m;
   } else {
-    end.tip_m += numbers_[0] * (inches_ ? units::inch : units::mm) * pose_.axis;
+    end.tip_m += numbers_[0] * unit_m() * pose_.axis;
   }
   for (Eigen::Index i = 0; i < 3; ++i) check_coordinate("GODLTA", end.tip_m[i], numbers_[0], unit_name());
   go(end);
@@ -207,52 +347,106 @@ void AptReader::take_godlta() {
 
 void AptReader::take_from() {
   take_numbers(3, 6);
-  Pose at = {.tip_m = position_of_numbers(), .axis = pose_.axis};
-  if (numbers_.size() == 6) at.axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
+  const Pose at = pose_of_numbers();
   if (!start_) {
     begin_at(at);
+    highest_m_ = at.tip_m.z();
   } else if (moves_to(at)) {
     reject_text("FROM", shown_, "is another position than the one that the tool has come to",
                 "FROM/ states where the first move begins; GOTO/ moves");
   }
 }
 
+void AptReader::reject_start(const char* what) const {
+  if (lost_line_ > 0) {
+    reject(std::string(word_), std::nullopt, "",
+           fmt::format("is {} after {} in line {}, from where the tool's position is not known", what, lost_word_,
+                       lost_line_),
+           "Give a position by RAPID and GOTO/ before it");
+  }
+  reject(std::string(word_), std::nullopt, "", fmt::format("is {} from a position that no line has given", what),
+         "Begin with FROM/ or GOTO/");
+}
+
+void AptReader::assume_once(Once what, Assumption assumption) {
+  if (!std::exchange(assumed_[static_cast<std::size_t>(what)], true)) remarks_.assume(std::move(assumption));
+}
+
+void AptReader::check_tool() const {
+  if (!cutting_ || tool_ == cutting_tool_) return;
+  reject(tool_word_, std::nullopt, "",
+         fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
+                     tool_line_),
+         "Write a program for each tool");
+}
+
+void AptReader::begin_cutting() {
+  if (!std::exchange(cutting_, true)) cutting_tool_ = tool_;
+}
+
 void AptReader::go(const Pose& end) {
-  const bool rapid = rapid_;
-  rapid_ = false;
+  const bool rapid = std::exchange(rapid_, false);
+  if (cycle_cut_line_ > 0 && moved_since_cut_line_ == 0) moved_since_cut_line_ = line_;
+  if (circle_) {
+    go_round(*std::exchange(circle_, std::nullopt), end, rapid);
+  } else if (last_circle_ && !rapid && is_on(*last_circle_, end.tip_m)) {
+    go_round(*last_circle_, end, false);
+  } else if (cycle_.on && !rapid) {
+    drill(end);
+  } else {
+    last_circle_.reset();
+    go_straight(end, rapid);
+  }
+}
+
+void AptReader::go_straight(const Pose& end, bool rapid) {
+  if (lost_line_ > 0) {
+    if (!rapid) reject_start("a move at feed");
+    come_back(end);
+    return;
+  }
+  highest_m_ = start_ ? std::max(highest_m_, end.tip_m.z()) : end.tip_m.z();
   if (!start_) {
     begin_at(end);
     return;
   }
   if (!moves_to(end)) return;
-  if (cutting_ && tool_ != cutting_tool_) {
-    reject("LOADTL", std::nullopt, "",
-           fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
-                       tool_line_),
-           "Write a program for each tool");
+  constexpr double nearly = -0.99999;  // within 0.3 deg of half a circle
+  if (rapid && setup_x_ && pose_.axis.dot(end.axis) < nearly) {
+    turn_over(end);
+    return;
   }
+  check_tool();
   const double turn_rad = turn_to(end.axis);
   if (rapid) {
+    lift_m_.reset();
+    if (cycle_.on) {
+      assume_once(
+          Once::rapid_in_cycle,
+          {.what = fmt::format("A position behind RAPID while CYCLE/{} is on, from line {} on", cycle_.name, line_),
+           .taken = "a rapid move and no hole",
+           .key = "CYCLE/OFF"});
+    }
     move(Block::Kind::rapid, end, 0.0);
     return;
   }
-  if (!std::exchange(cutting_, true)) cutting_tool_ = tool_;
-  move(Block::Kind::feed, end, feed_duration_s((end.tip_m - pose_.tip_m).norm(), turn_rad));
+  begin_cutting();
+  move(Block::Kind::feed, end, feed_duration_s(feed_, (end.tip_m - pose_.tip_m).norm(), turn_rad));
 }
 
-double AptReader::feed_duration_s(double length_m, double turn_rad) const {
-  if (!(feed_ > 0.0)) {
+double AptReader::feed_duration_s(const FeedRate& feed, double length_m, double turn_rad) const {
+  if (!(feed.value > 0.0)) {
     reject("FEDRAT", std::nullopt, "", "must be > 0 where the tool moves at feed", "Is a FEDRAT/ missing before it?");
   }
-  double per_minute = feed_;
-  if (feed_per_revolution_) {
+  double per_minute = feed.value;
+  if (feed.per_revolution) {
     if (!(spindle_speed_rad_per_s_ > 0.0)) {
-      reject("FEDRAT", feed_, feed_in_inches_ ? "in/rev" : "mm/rev", "needs a spindle speed, which no line has given",
+      reject("FEDRAT", feed.value, feed.inches ? "in/rev" : "mm/rev", "needs a spindle speed, which no line has given",
              "Give SPINDL/ in rpm or FEDRAT/ a minute");
     }
     per_minute *= spindle_speed_rad_per_s_ / units::rpm;
   }
-  if (length_m > 0.0) return units::minute * length_m / (per_minute * (feed_in_inches_ ? units::inch : units::mm));
+  if (length_m > 0.0) return units::minute * length_m / (per_minute * (feed.inches ? units::inch : units::mm));
   return units::minute * turn_rad / units::deg / per_minute;
 }
 
@@ -275,106 +469,28 @@ void AptReader::take_feed() {
   }
   if (!feed) reject("FEDRAT", std::nullopt, "", "has no number");
   check_feed("FEDRAT", *feed);
-  feed_ = *feed;
-  feed_in_inches_ = inches;
-  feed_per_revolution_ = per_revolution;
+  feed_ = {.value = *feed, .inches = inches, .per_revolution = per_revolution};
+  feed_in_cycle(feed_);
 }
 
 void AptReader::take_units() {
   const std::string_view unit = fields_.empty() ? std::string_view() : fields_.front();
   const bool inches = unit == "INCHES" || unit == "INCH" || unit == "IN";
-  if (!inches && unit != "MM") reject_text("UNITS", unit, "is no unit known here", "Known are MM and INCHES");
+  if (!inches && unit != "MM")
+    reject_text(std::string(word_), unit, "is no unit known here", "Known are MM and INCHES");
   inches_ = inches;
 }
 
-void AptReader::take_spindle() {
-  if (fields_.size() == 1 && fields_[0] == "OFF") {
-    spindle_ = Spindle::off;
-    return;
+void AptReader::take_mode() {
+  if (!fields_.empty() && fields_[0].starts_with("INCR")) {
+    reject_text("MODE", shown_, "makes positions steps", "Let the CAM system write absolute positions");
   }
-  std::optional<double> speed;
-  Spindle direction = Spindle::clockwise;  // where the statement says none
-  for (const std::string_view field : fields_) {
-    if (field == "CCLW") direction = Spindle::counterclockwise;
-    const bool known = field == "RPM" || field == "CLW" || field == "CCLW";
-    if (known) continue;
-    if (speed || field.empty() || (field.front() >= 'A' && field.front() <= 'Z')) {
-      skip_statement();  // a surface speed, a range of gears, on and off
-      return;
-    }
-    speed = number_of(field);
-  }
-  if (!speed) {
-    skip_statement();
-    return;
-  }
-  check_feed("SPINDL", *speed);
-  spindle_speed_rad_per_s_ = *speed * units::rpm;
-  spindle_ = direction;
-}
-
-void AptReader::take_coolant() {
-  const std::string_view field = fields_.size() == 1 ? fields_[0] : std::string_view();
-  if (field == "OFF") {
-    coolant_ = {};
-  } else if (field == "ON" || field == "FLOOD") {
-    coolant_.flood = true;
-  } else if (field == "MIST") {
-    coolant_.mist = true;
-  } else if (field == "THRU") {
-    coolant_.through_tool = true;
-  } else {
-    skip_statement();
-  }
-}
-
-void AptReader::take_tool() {
-  tool_ = fields_.empty() ? std::string() : std::string(fields_[0]);
-  tool_line_ = line_;
   skip_statement();
 }
 
-void AptReader::take_stop() {
-  if (!start_) {
-    skip_statement();
-    return;
-  }
-  dwell(0.0, word_ == "STOP" ? OperatorStop::always : OperatorStop::optional);
-}
-
-void AptReader::take_delay() {
-  const bool seconds =
-      fields_.size() == 1 && !fields_[0].empty() && !(fields_[0].front() >= 'A' && fields_[0].front() <= 'Z');
-  if (!seconds || !start_) {
-    skip_statement();
-    return;
-  }
-  const double time_s = number_of(fields_[0]);
-  check_dwell("DELAY", time_s);
-  if (time_s == 0.0) {
-    skip_statement();
-  } else {
-    dwell(time_s);
-  }
-}
-
-void AptReader::take_system() {
-  if (start_ && text_ != system_) {
-    reject_text("MSYS", shown_, "changes the coordinate system within the program",
-                "Positions count in one system from the first on; write a file for each");
-  }
-  system_ = text_;
-  skip_statement();
-}
-
-/// Statements that move what is not read while they are on.
-void AptReader::take_switch() {
-  const bool off = fields_.size() == 1 && (fields_[0] == "OFF" || fields_[0] == "NOMORE");
-  if (!off) {
-    reject_text(std::string(word_), shown_, "is not read: it may move the tool or its frame",
-                word_ == "CYCLE"    ? "Let the CAM system write cycles as straight moves"
-                : word_ == "CUTCOM" ? "Let the CAM system write the path of the tool's tip"
-                                    : as_frame);
+void AptReader::take_tracut() {
+  if (fields_.size() != 1 || (fields_[0] != "OFF" && fields_[0] != "NOMORE")) {
+    reject_text("TRACUT", shown_, "is not read: it may move the tool or its frame", as_frame);
   }
   skip_statement();
 }

@@ -27,4 +27,15 @@ struct Arc {
   [[nodiscard]] double bend_m() const;
 };
 
+/// By how much an arc's radius at its end may differ from that at its begin, as LinuxCNC's [LinuxCncGcode]: a program's
+/// last digit, or a thousandth of the radius, but never half a millimetre.
+[[nodiscard]] double arc_radius_error_m(double radius_m, bool inches);
+
+/// The arc about an axis that turns counterclockwise seen against `normal`, with a rise along it. Where the ends have
+/// the same place about the axis it is a whole turn.
+/// @param center_m  anywhere on the axis
+/// @param normal    unit vector
+[[nodiscard]] Arc arc_about(const Eigen::Vector3d& center_m, const Eigen::Vector3d& normal,
+                            const Eigen::Vector3d& begin_m, const Eigen::Vector3d& end_m);
+
 }  // namespace robomill::program

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -159,7 +160,8 @@ class Walk {
 
 ProgramFormat program_format_of(const std::filesystem::path& path) {
   const std::string ending = io::lowered(path.extension().string());
-  if (ending == ".apt" || ending == ".cls" || ending == ".cl") return ProgramFormat::apt;
+  static constexpr std::string_view apt[] = {".apt", ".cls", ".cl", ".ncl", ".aptsource"};
+  if (std::ranges::find(apt, ending) != std::end(apt)) return ProgramFormat::apt;
   return ending == ".csv" ? ProgramFormat::csv : ProgramFormat::gcode;
 }
 

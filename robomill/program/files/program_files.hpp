@@ -22,7 +22,7 @@ enum class ProgramFormat {
   csv     ///< a row a pose: x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min
 };
 
-/// .apt .cls .cl, .csv; anything else is G-code. Case does not matter.
+/// .apt .cls .cl .ncl .aptsource, .csv; anything else is G-code. Case does not matter.
 [[nodiscard]] ROBOMILL_API ProgramFormat program_format_of(const std::filesystem::path& path);
 
 /// "xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head".
@@ -72,13 +72,17 @@ struct ROBOMILL_API ProgramReading {
 ///
 /// The first line after which X, Y and Z are all known makes the start. Spindle and coolant stand with each block, M0
 /// and M1 as dwells with `operator_stop`; harmless M codes, tools, offsets' numbers and G codes that move nothing stand
-/// in `skipped`. Rejected are feeds that are missing or not above 0, two G codes of one group, words of axes that the
+/// in `skipped`. Drilling cycles and calls of subprograms become the moves that they make. G52 and G92 move the frame,
+/// other work frames are read where G10 L2 gives them. After G28, G30 and G53 the position is not known until a rapid
+/// gives it. Rejected are feeds that are missing or not above 0, two G codes of one group, words of axes that the
 /// machine does not have, arcs whose radius does not fit, codes that would move the tool or its frame in ways that are
-/// not read (cycles, splines, offsets G10 and G92, other coordinate systems, G28), M codes not known to be harmless,
-/// and moves after another tool, another length or the end of the tool centre point.
+/// not read (splines, compensation, macros, tilted planes), M codes not known to be harmless, and moves at feed after
+/// another tool, another length, another work frame or the end of the tool centre point.
 ///
-/// APT/CL: GOTO, GODLTA, FROM; RAPID holds for one move; FEDRAT a minute or a revolution; UNITS (mm unless said),
-/// SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame rejected.
+/// APT/CL (.apt .cls .cl .ncl .aptsource): GOTO, GODLTA, FROM; RAPID holds for one move; FEDRAT a minute or a
+/// revolution; UNITS (mm unless said), SPINDL, DELAY in seconds. Arcs (CIRCLE, MOVARC, TLON,GOFWD) become chords, CYCLE
+/// the moves of its holes. Positions behind another MSYS are moved into the first one; CSYS under TRNTYP/WORLD, CUTCOM
+/// and unknown statements are listed, others that move the tool or its frame rejected.
 ///
 /// CSV: columns x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min in any order; the first row is the start, and the feed of a
 /// row that of the move to it.

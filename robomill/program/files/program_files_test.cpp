@@ -88,7 +88,7 @@ TEST(ProgramFiles, NotesAreReportedOnceToo) {
 TEST(ProgramFiles, TheEndingDeterminesTheFormat) {
   EXPECT_EQ(program_format_of("a.APT"), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.cls"), ProgramFormat::apt);
-  EXPECT_EQ(program_format_of("a.cl"), ProgramFormat::apt);
+  for (const char* name : {"a.cl", "a.ncl", "a.AptSource"}) EXPECT_EQ(program_format_of(name), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.Csv"), ProgramFormat::csv);
   for (const char* name : {"a.ngc", "a.nc", "a.gcode", "a.tap", "a", "apt"}) {
     EXPECT_EQ(program_format_of(name), ProgramFormat::gcode) << name;

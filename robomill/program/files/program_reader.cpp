@@ -266,4 +266,25 @@ void ProgramReader::dwell(double duration_s, OperatorStop operator_stop) {
   if (operator_stop != OperatorStop::none) remarks_.operator_stop(line_);
 }
 
+void ProgramReader::begin_steps() {
+  next_step_ = 0;
+  ready_ = advance();
+}
+
+bool ProgramReader::take_step() {
+  while (next_step_ < steps_.size()) {
+    const MoveStep& step = steps_[next_step_++];
+    if (step.spindle) spindle_ = *step.spindle;
+    const Pose end = {.tip_m = step.tip_m, .axis = step.axis.value_or(pose_.axis)};
+    if (step.kind == Block::Kind::dwell) {
+      dwell(step.duration_s, step.stop);
+      return true;
+    }
+    if (!moves_to(end)) continue;
+    move(step.kind, end, step.duration_s);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace robomill::program

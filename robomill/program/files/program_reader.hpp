@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/program/files/drilling.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/program/program.hpp"
 
@@ -147,6 +148,10 @@ class ProgramReader {
   void move(Block::Kind kind, const Pose& end, double duration_s,
             Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0});
   void dwell(double duration_s, OperatorStop operator_stop = OperatorStop::none);
+  /// Begins to make blocks of `steps_`.
+  void begin_steps();
+  /// Makes the next block of `steps_`; false where they have no more.
+  bool take_step();
   void skip(std::string_view what) const { remarks_.skip(line_, what); }
 
   const std::string file_;
@@ -160,11 +165,13 @@ class ProgramReader {
   Spindle spindle_ = Spindle::not_given;
   Coolant coolant_;
   Block block_;
-  bool ready_ = false;  ///< block_ is to be taken away
+  bool ready_ = false;           ///< block_ is to be taken away
+  std::vector<MoveStep> steps_;  ///< of a statement that makes several moves
 
  private:
   void read_joined();
 
+  std::size_t next_step_ = 0;
   std::size_t count_ = 0;  ///< of lines
   bool continued_ = false;
   std::string joined_;  ///< of a statement over several lines

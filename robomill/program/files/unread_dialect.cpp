@@ -108,7 +108,6 @@ constexpr Sign inform_signs[] = {{"/JOB", OfLine::begin}, {"///RCONF", OfLine::b
 constexpr std::string_view urscript_endings[] = {".script", ".urscript"};
 constexpr Sign urscript_signs[] = {{"MOVEL(P["}, {"MOVEJ(["}, {"MOVEP(P["}, {"SERVOJ("}};
 
-constexpr std::string_view apt_endings[] = {".ncl", ".aptsource"};
 constexpr Sign apt_signs[] = {{"GOTO/"}, {"FEDRAT/"}, {"PARTNO", OfLine::begin}, {"CUTTER/"}};
 
 constexpr std::array<Dialect, 8> dialects = {{
@@ -121,7 +120,7 @@ constexpr std::array<Dialect, 8> dialects = {{
     {urscript_endings, urscript_signs, "is a program of a Universal Robots arm (URScript), which is not read",
      what_it_came_from},
     {rapid_endings, rapid_signs, "is a program of an ABB robot (RAPID), which is not read yet", what_it_came_from},
-    {apt_endings, apt_signs, "is a cutter location file (APT/CL)", "Let its name end in .apt, .cls or .cl"},
+    {{}, apt_signs, "is a cutter location file (APT/CL)", "Let its name end in .apt, .cls, .cl, .ncl or .aptsource"},
     {sinumerik_endings, sinumerik_signs, "is a Sinumerik 840D program, which is not read yet", as_gcode},
 }};
 

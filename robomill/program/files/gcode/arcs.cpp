@@ -70,7 +70,7 @@ void GcodeReader::split(PartedMove parted, double duration_s, const char* field)
 
 bool GcodeReader::advance() {
   if (!(parted_.next < parted_.count)) {
-    if (next_step_ < steps_.size()) return take_step();
+    if (take_step()) return true;
     if (stop_after_ == OperatorStop::none) return false;
     dwell(0.0, std::exchange(stop_after_, OperatorStop::none));
     return true;
@@ -79,22 +79,6 @@ bool GcodeReader::advance() {
   const Pose end = {.tip_m = parted_.tip_at(share), .axis = parted_.turn ? parted_.turn->axis_at(share) : pose_.axis};
   move(parted_.kind, end, parted_.duration_s, parted_.deviation);
   return true;
-}
-
-bool GcodeReader::take_step() {
-  while (next_step_ < steps_.size()) {
-    const Step& step = steps_[next_step_++];
-    if (step.spindle) spindle_ = *step.spindle;
-    const Pose end = {.tip_m = step.tip_m, .axis = step.axis.value_or(pose_.axis)};
-    if (step.kind == Block::Kind::dwell) {
-      dwell(step.duration_s, step.stop);
-      return true;
-    }
-    if (!moves_to(end)) continue;
-    move(step.kind, end, step.duration_s);
-    return true;
-  }
-  return advance();
 }
 
 double GcodeReader::turns_of(const Line& line) const {
@@ -107,10 +91,8 @@ double GcodeReader::turns_of(const Line& line) const {
   return turns;
 }
 
-// As LinuxCNC: a program's last digit, or a thousandth of the radius, but never half a millimetre.
 double GcodeReader::strict_radius_error_m(double radius_m) const {
-  const double digits_m = inches_ ? 0.0005 * units::inch : 0.005 * units::mm;
-  return std::min(0.5 * units::mm, std::max(digits_m, 1e-3 * radius_m));
+  return arc_radius_error_m(radius_m, inches_);
 }
 
 double GcodeReader::allowed_radius_error_m(double radius_m) const {

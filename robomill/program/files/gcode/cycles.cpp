@@ -12,8 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// So far above the hole's bottom G83 goes back at rapid, and so far G73 goes up: LinuxCNC's.
-constexpr double clearance_m = 0.254 * units::mm;
 constexpr std::size_t most_steps = 100'000;
 
 bool stops_spindle(int code) {
@@ -111,67 +109,37 @@ void GcodeReader::drill(const Line& line) {
   begin_steps();
 }
 
-void GcodeReader::step(Step wanted, const Line& line) {
-  const Vector3d& from_m = steps_.empty() ? pose_.tip_m : steps_.back().tip_m;
-  if (wanted.kind == Block::Kind::dwell) {
-    wanted.tip_m = from_m;
-    if (wanted.duration_s == 0.0 && wanted.stop == OperatorStop::none) return;
-  } else if (wanted.tip_m == from_m) {
-    return;
+void GcodeReader::drill_hole(const Vector3d& hole_m, const Line& line) {
+  const int code = cycle_.code;
+  Drilling drilling = {.waits = code == 880, .feeds_out = code == 850 || code == 890 || taps(code)};
+  if (code != 810) drilling.dwell_s = cycle_.dwell_s;
+  if (stops_spindle(code)) drilling.back = Spindle::off;
+  if (taps(code)) drilling.back = code == 840 ? Spindle::counterclockwise : Spindle::clockwise;
+  if (pecks(code)) {
+    remarks_.assume({.what = "Clearance of pecks (G73, G83)",
+                     .taken = "0.254 mm, as LinuxCNC's; a setting of the machine on Fanuc and Haas",
+                     .key = "straight moves in place of the cycle"});
+    drilling.pecks = code == 830 ? Drilling::Pecks::out : Drilling::Pecks::chip;
+    drilling.pecks_m = {*cycle_.q};
+    if (!(drilling.count(*cycle_.r - *cycle_.z) < most_steps)) {
+      reject("Q", *cycle_.q / unit_m(), unit_name(), "would make too many pecks");
+    }
   }
-  if (wanted.kind == Block::Kind::feed) wanted.duration_s = feed_duration_s(line, (wanted.tip_m - from_m).norm(), 0.0);
-  if (steps_.size() >= most_steps) {
+  const DrilledHole hole = {.point_m = {hole_m.x(), hole_m.y(), 0.0},
+                            .start_m = *cycle_.r,
+                            .bottom_m = *cycle_.z,
+                            .return_m = cycle_.to_r ? *cycle_.r : std::max(cycle_.initial_m, *cycle_.r)};
+  const std::size_t first = steps_.size();
+  const Pose from = {.tip_m = steps_.empty() ? pose_.tip_m : steps_.back().tip_m, .axis = pose_.axis};
+  add_hole(drilling, hole, from, spindle_, steps_);
+  if (steps_.size() > most_steps) {
     reject("Q", std::nullopt, "", fmt::format("would make more than {} moves of one line", most_steps),
            "Give deeper pecks or fewer holes");
   }
-  steps_.push_back(wanted);
-}
-
-void GcodeReader::drill_hole(const Vector3d& hole_m, const Line& line) {
-  const int code = cycle_.code;
-  const double r_m = *cycle_.r;
-  const double bottom_m = *cycle_.z;
-  const auto at = [&](double z_m) { return Vector3d(hole_m.x(), hole_m.y(), z_m); };
-  const Spindle turning = spindle_;
-  Vector3d above_m = steps_.empty() ? pose_.tip_m : steps_.back().tip_m;
-  above_m.z() = std::max(above_m.z(), r_m);
-  step({.tip_m = above_m, .spindle = turning}, line);
-  step({.tip_m = at(above_m.z()), .spindle = turning}, line);
-  step({.tip_m = at(r_m), .spindle = turning}, line);
-  if (pecks(code)) {
-    peck(hole_m, line);
-  } else {
-    step({.kind = Block::Kind::feed, .tip_m = at(bottom_m), .spindle = turning}, line);
-  }
-  if (code != 810) step({.kind = Block::Kind::dwell, .duration_s = cycle_.dwell_s, .spindle = turning}, line);
-  std::optional<Spindle> back;
-  if (stops_spindle(code)) back = Spindle::off;
-  if (taps(code)) back = code == 840 ? Spindle::counterclockwise : Spindle::clockwise;
-  if (code == 880) step({.kind = Block::Kind::dwell, .spindle = back, .stop = OperatorStop::always}, line);
-  const bool feeds_out = code == 850 || code == 890 || taps(code);
-  if (feeds_out) step({.kind = Block::Kind::feed, .tip_m = at(r_m), .spindle = back}, line);
-  step({.tip_m = at(cycle_.to_r ? r_m : std::max(cycle_.initial_m, r_m)), .spindle = feeds_out ? turning : back}, line);
-}
-
-void GcodeReader::peck(const Vector3d& hole_m, const Line& line) {
-  const auto at = [&](double z_m) { return Vector3d(hole_m.x(), hole_m.y(), z_m); };
-  const double r_m = *cycle_.r;
-  const double bottom_m = *cycle_.z;
-  remarks_.assume({.what = "Clearance of pecks (G73, G83)",
-                   .taken = "0.254 mm, as LinuxCNC's; a setting of the machine on Fanuc and Haas",
-                   .key = "straight moves in place of the cycle"});
-  // A last peck of less than a rounding is none.
-  const double pecks = std::max(std::ceil((r_m - bottom_m) / *cycle_.q - 1e-9), 1.0);
-  if (!(pecks < most_steps)) reject("Q", *cycle_.q / unit_m(), unit_name(), "would make too many pecks");
-  double depth_m = r_m;
-  for (double i = 1.0; i <= pecks; i += 1.0) {
-    const double next_m = i < pecks ? r_m - i * *cycle_.q : bottom_m;
-    if (i > 1.0) {
-      if (cycle_.code == 830) step({.tip_m = at(r_m)}, line);
-      step({.tip_m = at(std::min(depth_m + clearance_m, r_m))}, line);
-    }
-    step({.kind = Block::Kind::feed, .tip_m = at(next_m)}, line);
-    depth_m = next_m;
+  for (std::size_t i = first; i < steps_.size(); ++i) {
+    const Vector3d& begin_m = i == 0 ? pose_.tip_m : steps_[i - 1].tip_m;
+    if (steps_[i].kind != Block::Kind::feed) continue;
+    steps_[i].duration_s = feed_duration_s(line, (steps_[i].tip_m - begin_m).norm(), 0.0);
   }
 }
 

@@ -271,9 +271,4 @@ void GcodeReader::come_back(const Pose& end) {
   begin_steps();
 }
 
-void GcodeReader::begin_steps() {
-  next_step_ = 0;
-  ready_ = advance();
-}
-
 }  // namespace robomill::program

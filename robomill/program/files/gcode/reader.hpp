@@ -110,16 +110,6 @@ class GcodeReader final : public ProgramReader {
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
 
-  /// A move of a line that makes several.
-  struct Step {
-    Block::Kind kind = Block::Kind::rapid;
-    Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();
-    double duration_s = 0.0;
-    std::optional<Eigen::Vector3d> axis = {};  ///< none: as it stands
-    std::optional<Spindle> spindle = {};       ///< from here on
-    OperatorStop stop = OperatorStop::none;
-  };
-
   void read(std::string_view statement) override;
   void at_end() override;
   bool advance() override;
@@ -180,8 +170,6 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] bool is_elsewhere(const Line& line);
   /// A rapid after positions that were not known: up, across, down.
   void come_back(const Pose& end);
-  void begin_steps();
-  bool take_step();
   [[nodiscard]] const char* unknown_axis() const;
   [[noreturn]] void reject_unknown(const char* axis) const;
 
@@ -191,9 +179,6 @@ class GcodeReader final : public ProgramReader {
   void drill(const Line& line);
   /// @param hole_m  X and Y
   void drill_hole(const Eigen::Vector3d& hole_m, const Line& line);
-  void peck(const Eigen::Vector3d& hole_m, const Line& line);
-  /// Adds a move, with the time of one at feed, where it moves.
-  void step(Step wanted, const Line& line);
   [[nodiscard]] std::size_t repeats_of(const Line& line) const;
 
   // calls.cpp
@@ -270,8 +255,6 @@ class GcodeReader final : public ProgramReader {
     bool to_r = false;  ///< G99
   };
   Cycle cycle_;
-  std::vector<Step> steps_;
-  std::size_t next_step_ = 0;
 
   bool calls_allowed_ = false, returns_ = false;
   std::size_t depth_ = 0;

@@ -1,3 +1,5 @@
+#include "robomill/program/files/rewrite/apt.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,10 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/program/files/apt_reader.hpp"
-#include "robomill/program/files/rewrite/rewriter.hpp"
 
 namespace robomill::program {
 namespace {
@@ -25,66 +24,7 @@ bool begins_with_letter(std::string_view field) {
   return !field.empty() && ((field.front() >= 'A' && field.front() <= 'Z'));
 }
 
-/// Rewrites APT/CL.
-class AptRewriter final : public Rewriter {
- public:
-  explicit AptRewriter(const RewriteJob& job)
-      : Rewriter(job), in_(job.file, job.reading, remarks_), out_(job.file, job.reading, remarks_) {}
-
- private:
-  struct Field {
-    std::size_t begin = 0, end = 0;  ///< of what is joined, without blanks about it
-    std::string text;                ///< capitals without blanks
-  };
-  /// How the program has written a feed or a speed, to be written so again.
-  struct Template {
-    std::string before, behind;  ///< the number
-    bool inches = false, per_revolution = false, unit_said = false;
-    Spindle direction = Spindle::clockwise;
-  };
-
-  ProgramReader& in() override { return in_; }
-  ProgramReader& out() override { return out_; }
-  void note(Statement& statement) override;
-  Composed compose(std::size_t index) override;
-  [[nodiscard]] std::string comment(std::string_view text) const override { return fmt::format("$$ {}", text); }
-
-  void split(const Statement& statement);
-  /// The one field that is a number; none where there is none, or several.
-  [[nodiscard]] const Field* number_field() const;
-  [[nodiscard]] bool says_speed() const;
-  [[nodiscard]] double unit_m(std::size_t index) const { return modes_[index].inches ? units::inch : units::mm; }
-  [[nodiscard]] std::size_t place_of_field(const Statement& statement, const Field& field) const;
-  void set_field(const Statement& statement, const Field& field, std::string text, Composed& composed) const;
-  [[nodiscard]] std::size_t count_numbers() const;
-  void set_ends(std::size_t index, Composed& composed);
-  void set_axis(std::size_t index, Composed& composed);
-  /// @throws InvalidInput where no axis can be added to a statement that has none
-  void check_says_axis(std::size_t line) const;
-  void set_step(std::size_t index, Composed& composed);
-  /// A step becomes the position and the axis that it comes to.
-  void set_position(std::size_t index, const Eigen::Vector3d& axis, Composed& composed);
-  void keep_template(std::size_t index, std::optional<Template>& kept) const;
-  void set_said_feed(std::size_t index, Composed& composed);
-  void set_said_speed(std::size_t index, Composed& composed);
-  void add_speed(std::size_t index, Composed& composed);
-  void add_feed(std::size_t index, Composed& composed);
-  /// A feed as a statement counts it: of a minute or a revolution, in its unit.
-  [[nodiscard]] static double said(double per_minute, bool inches, bool degrees, bool per_revolution, double rpm);
-
-  ProgramRemarks remarks_{0};
-  AptReader in_, out_;
-  std::vector<AptReader::Modes> modes_;  ///< after each statement
-  std::string word_;                     ///< of the statement split last
-  std::vector<Field> fields_;
-  std::string_view joined_text_;
-  std::optional<Template> feed_template_, speed_template_;
-  double speed_rad_per_s_ = 0.0;       ///< that holds behind what has been composed
-  bool says_axes_ = false;             ///< some position comes with its axis
-  std::optional<bool> multax_;         ///< MULTAX is on; none: not said yet
-  Vector3d axis_ = Vector3d::UnitZ();  ///< as written last behind what has been composed
-  Motions motions_;                    ///< of the statement composed last
-};
+}  // namespace
 
 void AptRewriter::split(const Statement& statement) {
   joined_text_ = join(statement);
@@ -141,16 +81,24 @@ void AptRewriter::note(Statement& statement) {
     says_axes_ = says_axes_ || count_numbers() > 3;
   }
   const bool point = std::ranges::any_of(fields_, [](const Field& f) { return f.text.find('.') != std::string::npos; });
+  const std::size_t index = modes_.size() - 1;
+  if (word_ == "CIRCLE" || word_ == "MOVARC" || word_ == "INDIRV" || word_ == "INDIRP") last_opener_ = index;
+  if (word_ == "CYCLE" && modes.cycle_feed && fields_.size() > 1) last_cycle_ = index;
+  const bool round = modes.made == AptReader::Made::arc;
+  openers_.push_back(round ? last_opener_ : none);
+  cycles_.push_back(last_cycle_);
+  if (round && last_opener_ != none) arcs_[last_opener_].push_back(index);
+  statement.round = round;
   statement.says_feed = word_ == "FEDRAT";
   statement.says_speed = says_speed();
   if (statement.says_feed) points_.feed = points_.feed || point;
   if (statement.says_speed) points_.speed = points_.speed || point;
   const Move move = move_of(statement);
-  if (move.count == 0 || !move.at_feed) return;
+  if (move.count == 0 || !move.at_feed || modes.made == AptReader::Made::moves) return;
   statement.moves_at_feed = true;
   const double rpm = in_.spindle_speed_rad_per_s() / units::rpm;
   statement.per_minute = modes.feed * (modes.feed_per_revolution ? rpm : 1.0);
-  if (modes.feed_in_inches && move.read_way_m > 0.0) statement.per_minute *= units::inch / units::mm;
+  if (modes.feed_in_inches && (round || move.read_way_m > 0.0)) statement.per_minute *= units::inch / units::mm;
 }
 
 std::size_t AptRewriter::place_of_field(const Statement& statement, const Field& field) const {
@@ -175,6 +123,11 @@ void AptRewriter::set_ends(std::size_t index, Composed& composed) {
   const Move move = move_of(statement);
   const Vector3d from_m = out_.pose().tip_m;
   const bool stays = !statement.starts && (move.count == 0 || move.still());
+  if (modes_[index].moved_frame) {
+    check_unmoved(index, "count in another system than the first ones");
+    motions_.way_m = move.way_m;
+    return;
+  }
   Vector3d end_m = from_m;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -198,11 +151,17 @@ void AptRewriter::check_says_axis(std::size_t line) const {
 void AptRewriter::set_axis(std::size_t index, Composed& composed) {
   const Statement& statement = statements()[index];
   const Move move = move_of(statement);
+  if (modes_[index].moved_frame) {
+    motions_.turn_deg = move.count > 0 ? turn_deg(index) : 0.0;
+    return;
+  }
   const Vector3d from = out_.pose().axis;
+  const Vector3d plain = modes_[index].plain_axis.value_or(from);  // of a position that says none
   const Vector3d target = wanted_axis(statement, move);
   const bool stays = !statement.starts && move.count == 0;
   if (count_numbers() < 6) {
-    if (same_axis(from, target)) return;
+    motions_.turn_deg = angle_between(from, target) / units::deg;
+    if (same_axis(plain, target)) return;
     check_says_axis(statement.line);
     const AxisNumbers to = axis_numbers({}, target);
     axis_ = to.written;
@@ -255,6 +214,10 @@ void AptRewriter::set_step(std::size_t index, Composed& composed) {
   const Move move = move_of(statement);
   if (move.count == 0) return;
   motions_.way_m = move.way_m;
+  if (modes_[index].moved_frame) {
+    check_unmoved(index, "count in another system than the first ones");
+    return;
+  }
   if (const Vector3d axis = wanted_axis(statement, move); !same_axis(axis, out_.pose().axis)) {
     set_position(index, axis, composed);
     return;
@@ -308,6 +271,17 @@ void AptRewriter::set_said_feed(std::size_t index, Composed& composed) {
   const Field* const field = number_field();
   if (field == nullptr) return;
   keep_template(index, feed_template_);
+  const std::optional<AptReader::FeedRate> cycle = modes_[index].cycle_feed ? out_.modes().cycle_feed : std::nullopt;
+  if (cycle) {
+    // Within a cycle it says the cycle's own feed again.
+    const bool same_unit =
+        cycle->inches == modes_[index].feed_in_inches && cycle->per_revolution == modes_[index].feed_per_revolution;
+    if (same_unit && !same_rate(cycle->value, modes_[index].feed)) {
+      set_field(statement, *field, significant_text(cycle->value, field->text.find('.') != std::string::npos),
+                composed);
+    }
+    return;
+  }
   if (statement.feeds == none) return;
   const Feed needed = needed_feed(statement.feeds);
   const AptReader::Modes& modes = modes_[index];
@@ -330,40 +304,48 @@ void AptRewriter::set_said_speed(std::size_t index, Composed& composed) {
   set_field(statement, field, significant_text(wanted_rpm(block), field.text.find('.') != std::string::npos), composed);
 }
 
-void AptRewriter::add_speed(std::size_t index, Composed& composed) {
-  const Statement& statement = statements()[index];
-  const std::size_t block = first_turning(statement.first_block, statement.first_block + statement.blocks);
-  const double held_rpm = out_.spindle_speed_rad_per_s() / units::rpm;
-  speed_rad_per_s_ = out_.spindle_speed_rad_per_s();
-  if (block == none || same_rate(held_rpm, wanted_rpm(block))) return;
+std::string AptRewriter::speed_line(const Statement& statement, std::size_t block, double held_rad_per_s) const {
+  if (block == none || same_rate(held_rad_per_s / units::rpm, wanted_rpm(block))) return {};
   const Spindle direction = job().as_read.blocks[block].spindle;
   if (direction == Spindle::not_given) {
     reject(statement.line, "SPINDL", "cannot be changed where the program has not turned its spindle on",
            "Give the program a SPINDL/ before this line");
   }
-  speed_rad_per_s_ = job().wanted.blocks[block].spindle_speed_rad_per_s;
   const std::string number = significant_text(wanted_rpm(block), points_.speed);
   const bool alike = speed_template_ && speed_template_->direction == direction;
-  composed.before.push_back(
-      alike ? speed_template_->before + number + speed_template_->behind
-            : fmt::format("SPINDL/{},RPM,{}", number, direction == Spindle::clockwise ? "CLW" : "CCLW"));
+  return alike ? speed_template_->before + number + speed_template_->behind
+               : fmt::format("SPINDL/{},RPM,{}", number, direction == Spindle::clockwise ? "CLW" : "CCLW");
+}
+
+void AptRewriter::add_speed(std::size_t index, Composed& composed) {
+  const Statement& statement = statements()[index];
+  const std::size_t block = first_turning(statement.first_block, statement.first_block + statement.blocks);
+  speed_rad_per_s_ = out_.spindle_speed_rad_per_s();
+  std::string line = speed_line(statement, block, speed_rad_per_s_);
+  if (line.empty()) return;
+  speed_rad_per_s_ = job().wanted.blocks[block].spindle_speed_rad_per_s;
+  composed.before.push_back(std::move(line));
+}
+
+std::string AptRewriter::feed_line(std::size_t index, const Feed& needed, AptReader::FeedRate& held, double rpm) const {
+  const double value = said(needed.per_minute, held.inches, needed.degrees, held.per_revolution, rpm);
+  if (same_rate(value, held.value)) return {};
+  const std::optional<Template>& like = feed_template_;
+  const bool alike = like && (like->unit_said || like->inches == modes_[index].inches);
+  held = {.inches = alike ? like->inches : modes_[index].inches, .per_revolution = alike && like->per_revolution};
+  held.value = said(needed.per_minute, held.inches, needed.degrees, held.per_revolution, rpm);
+  const std::string number = significant_text(held.value, points_.feed);
+  return alike ? like->before + number + like->behind
+               : fmt::format("FEDRAT/{},{}", number, held.inches ? "IPM" : "MMPM");
 }
 
 void AptRewriter::add_feed(std::size_t index, Composed& composed) {
-  const Statement& statement = statements()[index];
-  if (!statement.moves_at_feed) return;
-  const Feed needed = needed_feed(index, motions_);
-  const AptReader::Modes held = out_.modes();
-  const double rpm = speed_rad_per_s_ / units::rpm;
-  const double value = said(needed.per_minute, held.feed_in_inches, needed.degrees, held.feed_per_revolution, rpm);
-  if (same_rate(value, held.feed)) return;
-  const std::optional<Template>& like = feed_template_;
-  const bool alike = like && (like->unit_said || like->inches == modes_[index].inches);
-  const bool inches = alike ? like->inches : modes_[index].inches;
-  const std::string number = significant_text(
-      said(needed.per_minute, inches, needed.degrees, alike && like->per_revolution, rpm), points_.feed);
-  composed.before.push_back(alike ? like->before + number + like->behind
-                                  : fmt::format("FEDRAT/{},{}", number, inches ? "IPM" : "MMPM"));
+  if (!statements()[index].moves_at_feed) return;
+  const AptReader::Modes modes = out_.modes();
+  AptReader::FeedRate held = {
+      .value = modes.feed, .inches = modes.feed_in_inches, .per_revolution = modes.feed_per_revolution};
+  std::string line = feed_line(index, needed_feed(index, motions_), held, speed_rad_per_s_ / units::rpm);
+  if (!line.empty()) composed.before.push_back(std::move(line));
 }
 
 Rewriter::Composed AptRewriter::compose(std::size_t index) {
@@ -372,6 +354,19 @@ Rewriter::Composed AptRewriter::compose(std::size_t index) {
   Composed composed;
   motions_ = {};
   if (word_ == "MULTAX") multax_ = count_numbers() == 0 || fields_[0].text != "OFF";
+  if (arcs_.contains(index)) {
+    compose_opener(index, composed);
+    return composed;
+  }
+  if (modes_[index].made == AptReader::Made::arc) {
+    compose_arc(index, composed);
+    return composed;
+  }
+  if (modes_[index].made == AptReader::Made::moves) {
+    compose_moves(index, composed);
+    return composed;
+  }
+  if (word_ == "CYCLE" && cycles_[index] == index) set_said_cycle(index, composed);
   if (word_ == "GOTO" || word_ == "FROM") {
     set_ends(index, composed);
     set_axis(index, composed);
@@ -383,8 +378,6 @@ Rewriter::Composed AptRewriter::compose(std::size_t index) {
   add_feed(index, composed);
   return composed;
 }
-
-}  // namespace
 
 std::unique_ptr<Rewriter> make_apt_rewriter(const RewriteJob& job) {
   return std::make_unique<AptRewriter>(job);

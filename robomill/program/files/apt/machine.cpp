@@ -1,0 +1,120 @@
+// What an AptReader's program says of tool, spindle and coolant.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "robomill/base/units.hpp"
+#include "robomill/program/files/apt_reader.hpp"
+
+namespace robomill::program {
+
+void AptReader::take_spindle() {
+  if (fields_.size() == 1 && fields_[0] == "OFF") {
+    spindle_ = Spindle::off;
+    return;
+  }
+  std::optional<double> speed;
+  Spindle direction = Spindle::clockwise;  // where the statement says none
+  for (const std::string_view field : fields_) {
+    if (field == "CCLW") direction = Spindle::counterclockwise;
+    const bool known = field == "RPM" || field == "CLW" || field == "CCLW";
+    if (known) continue;
+    if (speed || field.empty() || (field.front() >= 'A' && field.front() <= 'Z')) {
+      skip_statement();  // a surface speed, a range of gears, on and off
+      return;
+    }
+    speed = number_of(field);
+  }
+  if (!speed) {
+    skip_statement();
+    return;
+  }
+  check_feed("SPINDL", *speed);
+  spindle_speed_rad_per_s_ = *speed * units::rpm;
+  spindle_ = direction;
+}
+
+void AptReader::take_coolant() {
+  const std::string_view field = fields_.empty() ? std::string_view() : fields_[0];
+  if (field == "OFF") {
+    coolant_ = {};
+  } else if (field == "ON" || field == "FLOOD") {
+    coolant_.flood = true;
+  } else if (field == "MIST") {
+    coolant_.mist = true;
+  } else if (field == "THRU") {
+    coolant_.through_tool = true;
+  } else {
+    skip_statement();
+  }
+}
+
+// Whichever statement names the tool that comes next.
+void AptReader::mount(std::string tool) {
+  tool_ = std::move(tool);
+  tool_word_ = word_ == "TOOLPATH" ? "TOOL PATH" : std::string(word_);
+  tool_line_ = line_;
+  skip_statement();
+}
+
+void AptReader::take_tool() {
+  loaded_ = fields_.empty() ? std::string() : std::string(fields_[0]);
+  mount(fmt::format("{}|{}", loaded_, path_tool_));
+}
+
+void AptReader::take_load() {
+  if (fields_.empty() || fields_[0] != "TOOL") {
+    skip_statement();
+    return;
+  }
+  loaded_ = fields_.size() > 1 ? std::string(fields_[1]) : std::string();
+  mount(fmt::format("{}|{}", loaded_, path_tool_));
+}
+
+// TOOL PATH/NAME,TOOL,ITS_TOOL
+void AptReader::take_tool_path() {
+  if (fields_.size() < 3 || fields_[1] != "TOOL" || fields_[2] == path_tool_) {
+    skip_statement();
+    return;
+  }
+  path_tool_ = fields_[2];
+  mount(fmt::format("{}|{}", loaded_, path_tool_));
+}
+
+void AptReader::take_stop() {
+  if (!start_) {
+    skip_statement();
+    return;
+  }
+  dwell(0.0, word_ == "STOP" ? OperatorStop::always : OperatorStop::optional);
+}
+
+void AptReader::take_delay() {
+  const bool seconds =
+      fields_.size() == 1 && !fields_[0].empty() && !(fields_[0].front() >= 'A' && fields_[0].front() <= 'Z');
+  if (!seconds || !start_) {
+    skip_statement();
+    return;
+  }
+  const double time_s = number_of(fields_[0]);
+  check_dwell("DELAY", time_s);
+  if (time_s == 0.0) {
+    skip_statement();
+  } else {
+    dwell(time_s);
+  }
+}
+
+// Cutter locations are those of the tool's tip: the path stands in the file offset already.
+void AptReader::take_compensation() {
+  const bool off = fields_.size() == 1 && (fields_[0] == "OFF" || fields_[0] == "NOMORE");
+  if (!off) {
+    assume_once(Once::compensation,
+                {.what = fmt::format("Path under CUTCOM, from line {} on", line_),
+                 .taken = "that of the tool's centre: the machine compensates for a worn tool alone",
+                 .key = "CUTCOM/OFF"});
+  }
+  skip_statement();
+}
+
+}  // namespace robomill::program
