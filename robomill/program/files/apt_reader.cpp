@@ -114,13 +114,15 @@ const std::vector<AptReader::Statement>& AptReader::statements() {
       {"DELAY", &AptReader::take_delay},   {"MSYS", &AptReader::take_system},    {"CUTCOM", &AptReader::take_switch},
       {"CYCLE", &AptReader::take_switch},  {"TRACUT", &AptReader::take_switch},  {"FINI", &AptReader::take_end},
       {"MULTAX", &AptReader::take_known},  {"COOLNT", &AptReader::take_coolant}, {"STOP", &AptReader::take_stop},
-      {"OPSTOP", &AptReader::take_stop},   {"LOADTL", &AptReader::take_tool},    {"TURRET", &AptReader::take_tool}};
+      {"OPSTOP", &AptReader::take_stop},   {"LOADTL", &AptReader::take_tool},    {"TURRET", &AptReader::take_tool},
+      {"LOAD", &AptReader::take_tool}};
   return known;
 }
 
 void AptReader::read(std::string_view statement) {
   split(statement);
   if (text_.empty()) return;
+  if (second_tool_line_ > 0 && word_ != "LOADTL" && word_ != "LOAD" && word_ != "TURRET" && word_ != "FINI") return;
   if (word_ == "GOTO") {
     take_goto();
     return;
@@ -192,7 +194,7 @@ void AptReader::take_goto() {
 
 void AptReader::take_godlta() {
   take_numbers(1, 3);
-  if (!start_) {
+  if (!start_ && !passes()) {
     reject("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
   }
   Pose end = pose_;
@@ -209,7 +211,7 @@ void AptReader::take_from() {
   take_numbers(3, 6);
   Pose at = {.tip_m = position_of_numbers(), .axis = pose_.axis};
   if (numbers_.size() == 6) at.axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
-  if (!start_) {
+  if (!start_ || passes()) {
     begin_at(at);
   } else if (moves_to(at)) {
     reject_text("FROM", shown_, "is another position than the one that the tool has come to",
@@ -220,16 +222,16 @@ void AptReader::take_from() {
 void AptReader::go(const Pose& end) {
   const bool rapid = rapid_;
   rapid_ = false;
-  if (!start_) {
+  begin_part_move();
+  if (!start_ || passes()) {
     begin_at(end);
     return;
   }
   if (!moves_to(end)) return;
   if (cutting_ && tool_ != cutting_tool_) {
-    reject("LOADTL", std::nullopt, "",
-           fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
-                       tool_line_),
-           "Write a program for each tool");
+    second_tool_line_ = tool_line_;
+    second_move_line_ = line_;
+    return;
   }
   const double turn_rad = turn_to(end.axis);
   if (rapid) {
@@ -328,10 +330,31 @@ void AptReader::take_coolant() {
   }
 }
 
+// LOADTL/4, LOADTL/4,ADJUST,1, TURRET/4, LOAD/TOOL,4.
 void AptReader::take_tool() {
-  tool_ = fields_.empty() ? std::string() : std::string(fields_[0]);
+  const std::size_t place = word_ == "LOAD" ? 1 : 0;
+  if (place == 1 && (fields_.empty() || fields_[0] != "TOOL")) {
+    skip_statement();
+    return;
+  }
+  tool_ = fields_.size() > place ? std::string(fields_[place]) : std::string();
   tool_line_ = line_;
+  const std::optional<double> number = io::parse_number(tool_.starts_with('T') ? tool_.substr(1) : tool_);
+  const std::optional<int> whole = number ? whole_tool(*number) : std::nullopt;
+  mount_tool(whole, whole ? fmt::format("T{}", *whole) : tool_.empty() ? std::string("one without a number") : tool_);
   skip_statement();
+}
+
+void AptReader::at_end() {
+  if (second_tool_line_ == 0) return;
+  throw SeveralTools(
+      {.where = fmt::format("{}:{}", file_, second_tool_line_),
+       .field = "LOADTL",
+       .rule = fmt::format("mounts another tool than the one that has cut, whose length is not known here, and line "
+                           "{} moves it",
+                           second_move_line_),
+       .hint = "Write a program for each tool"},
+      tools_.parts(), tools_.count());
 }
 
 void AptReader::take_stop() {

@@ -18,12 +18,16 @@ class AptReader final : public ProgramReader {
     bool inches = false;
     double feed = 0.0;  ///< a minute or a revolution; 0: none yet
     bool feed_in_inches = false, feed_per_revolution = false;
+    double speed_rad_per_s = 0.0;
+    bool passes = false;  ///< the last statement is in a part of a tool that is not chosen
   };
   [[nodiscard]] Modes modes() const {
     return {.inches = inches_,
             .feed = feed_,
             .feed_in_inches = feed_in_inches_,
-            .feed_per_revolution = feed_per_revolution_};
+            .feed_per_revolution = feed_per_revolution_,
+            .speed_rad_per_s = spindle_speed_rad_per_s_,
+            .passes = passes()};
   }
 
   [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
@@ -37,6 +41,7 @@ class AptReader final : public ProgramReader {
   static const std::vector<Statement>& statements();
 
   void read(std::string_view statement) override;
+  void at_end() override;
 
   void split(std::string_view statement);
   [[nodiscard]] double number_of(std::string_view field) const;
@@ -76,6 +81,8 @@ class AptReader final : public ProgramReader {
   bool feed_in_inches_ = false, feed_per_revolution_ = false;
   std::string tool_, cutting_tool_;  ///< as LOADTL names it; the one of the moves at feed
   std::size_t tool_line_ = 0;
+  /// Of the first other tool that moves, and of its move: from here on tools alone are looked at.
+  std::size_t second_tool_line_ = 0, second_move_line_ = 0;
   bool cutting_ = false;  ///< a move at feed has come
   std::string system_;    ///< the coordinate system's statement
 };

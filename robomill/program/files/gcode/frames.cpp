@@ -62,6 +62,15 @@ void GcodeReader::choose_system(const Line& line) {
   system_ = {.value = id, .line = line_, .code = std::move(said)};
 }
 
+void GcodeReader::note_other_base() const {
+  if (!passed_system_ || passed_system_->value == system_.value) return;
+  const auto name = [](const Said<int>& system) { return system.code.empty() ? std::string("G54") : system.code; };
+  remarks_.assume({.what = "The program's frame",
+                   .taken = fmt::format("{}, in which {} begins; the tools before it begin in {}", name(system_),
+                                        tools_.now().name, name(*passed_system_)),
+                   .key = "workpiece.origin_mm of that frame"});
+}
+
 std::optional<Vector3d> GcodeReader::origin_m() const {
   if (shift_lost_.value) return std::nullopt;
   const Vector3d offset_m = local_m_ + shift_m_;
@@ -179,7 +188,8 @@ void GcodeReader::go_home(const Line& line) {
     check_coordinate(axis_names[i], point.tip_m[axis], *line.position[i], unit_name());
   }
   skip(said);
-  if (start_ && !pending_ && !setup_change(line) && moves_to(point)) move(Block::Kind::rapid, point, 0.0);
+  const bool known = start_ && !pending_ && tools_.between() == nullptr;
+  if (known && !setup_change(line) && moves_to(point)) move(Block::Kind::rapid, point, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     if (line.position[i] || (!named && !turns)) lose(i, code);
     if (line.rotary[i] || (!named && !turns)) lost_rotary_[i] = true;
@@ -203,13 +213,14 @@ bool GcodeReader::is_elsewhere(const Line& line) {
   std::optional<Change> change = setup_change(line);
   const bool of_length = change && !center_point_lost(line);
   if (!change && !origin_m()) {
+    const Said<int> base = base_.value_or(system_);
     change =
         Change{.line = system_.line,
                .code = system_.code,
                .what = fmt::format("is another work frame than {} of the positions before{}; where the one lies in "
                                    "the other is not known here",
-                                   base_->code.empty() ? "that" : base_->code,
-                                   base_->line > 0 ? fmt::format(" (line {})", base_->line) : ""),
+                                   base.code.empty() ? "that" : base.code,
+                                   base.line > 0 ? fmt::format(" (line {})", base.line) : ""),
                .hint = "Write a program for each frame, or give both by G10 L2 P X Y Z before the first position"};
     if (shift_lost_.value) {
       change->line = shift_lost_.line;

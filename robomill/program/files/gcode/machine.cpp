@@ -111,8 +111,8 @@ void GcodeReader::set_up(const Line& line) {
     reject("G", 50.0, "", "stands on a line with positions: on a lathe it would set the frame by them");
   }
   constexpr double unknown = -1.0;
-  if (line.tool) prepared_tool_ = *line.tool;
-  if (line.tool_change) mount(prepared_tool_.value_or(unknown));
+  if (line.tool) name_tool(*line.tool);
+  if (line.tool_change) mount(prepared_tool_.value_or(unknown), "M6");
   if (line.length) set_length(*line.length, line);
   if (line.center_point) {
     const int code = static_cast<int>(line.center_point->number);
@@ -133,11 +133,46 @@ void GcodeReader::set_length(const GcodeWords::Word& word, const Line& line) {
   }
 }
 
-void GcodeReader::mount(double number) {
-  constexpr std::size_t most = 100;
-  tool_ = {.value = number, .line = line_, .code = "M6"};
-  ++mounted_count_;
-  if (mounted_.size() < most) mounted_.push_back({.number = number, .line = line_});
+bool GcodeReader::changes_tool_by_t(ProgramLines lines, const std::string& file) {
+  GcodeWords words;
+  std::string_view line;
+  bool names = false;
+  while (lines.next(line)) {
+    try {
+      words.scan(line, file, lines.number());
+    } catch (const InvalidInput&) {
+      continue;  // rejected when it is read
+    }
+    for (const GcodeWords::Word& word : words.words()) {
+      if (word.letter == 'm' && (word.number == 6.0 || word.number == 16.0)) return false;
+      names = names || word.letter == 't';
+    }
+  }
+  return names;
+}
+
+void GcodeReader::mount(double number, const char* code) {
+  const bool again = tool_.value == std::optional(number);
+  tool_ = {.value = number, .line = line_, .code = code};
+  if (!m6_has_come_ && !by_t_) tools_.forget();  // T words before it have mounted nothing
+  m6_has_come_ = true;
+  mount_tool(whole_tool(number), number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", number));
+  if (!reading_.tool || again || passes() || start_ || !tools_.moved()) return;
+  // The change moves the tool by itself.
+  known_ = {};
+  lost_ = {.value = true, .line = line_, .code = code};
+}
+
+// Without an M6 in the whole program, T may be what changes the tool.
+void GcodeReader::name_tool(double number) {
+  prepared_tool_ = number;
+  if (by_t_) {
+    remarks_.assume({.what = "T without an M6", .taken = "a change of the tool", .key = "M6"});
+    mount(number, "T");
+  } else if (!m6_has_come_ && !reading_.tool) {
+    named_ = {.value = number, .line = line_, .code = fmt::format("T{:g}", number)};
+    mount_tool(whole_tool(number), named_.code);
+  }
 }
 
 // What follows the first cut of a second tool is not carried out.
@@ -149,12 +184,12 @@ void GcodeReader::list_tools(std::string_view statement) {
   }
   bool changes = false;
   for (const GcodeWords::Word& word : words_.words()) {
-    if (word.letter == 't') prepared_tool_ = word.number;
+    if (word.letter == 't') name_tool(word.number);
     if (word.letter != 'm') continue;
     changes = changes || word.number == 6.0 || word.number == 16.0;
     ended_ = ended_ || word.number == 2.0 || word.number == 30.0;
   }
-  if (changes) mount(prepared_tool_.value_or(-1.0));
+  if (changes) mount(prepared_tool_.value_or(-1.0), "M6");
 }
 
 void GcodeReader::at_end() {
@@ -164,24 +199,33 @@ void GcodeReader::at_end() {
                                            .rule = "begins a subprogram that does not end",
                                            .hint = "Is its endsub missing?"});
   }
-  if (!second_tool_) return;
-  constexpr std::size_t most_named = 12;
-  std::string tools;
-  for (std::size_t i = 0; i < std::min(mounted_.size(), most_named); ++i) {
-    const Mounted& tool = mounted_[i];
-    tools +=
-        fmt::format("{}{} (line {})", i == 0 ? "" : ", ",
-                    tool.number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", tool.number), tool.line);
-  }
-  if (mounted_count_ > most_named) tools += fmt::format(" and {} more", mounted_count_ - most_named);
-  throw InvalidInput(InvalidInput::Parts{
-      .where = fmt::format("{}:{}", file_, second_tool_->line),
-      .field = second_tool_->code,
-      .rule = fmt::format("{}, and line {} cuts; the program mounts {}", second_tool_->what, second_tool_line_, tools),
-      .hint = second_tool_->hint});
+  const bool named = !second_tool_ && !m6_has_come_ && second_named_;
+  if (!second_tool_ && !named) return;
+  const Change& change = named ? *second_named_ : *second_tool_;
+  const std::size_t cuts = named ? second_named_line_ : second_tool_line_;
+  throw SeveralTools({.where = fmt::format("{}:{}", file_, change.line),
+                      .field = change.code,
+                      .rule = fmt::format("{}, and line {} cuts", change.what, cuts),
+                      .hint = change.hint},
+                     tools_.parts(), tools_.count());
 }
 
 void GcodeReader::begin_cutting() {
+  if (!m6_has_come_ && !named_cutting_.value) {
+    named_cutting_ = named_;
+  } else if (!m6_has_come_ && named_.value != named_cutting_.value && !second_named_) {
+    second_named_ = {.line = named_.line,
+                     .code = named_.code,
+                     .what = "names another tool than the one that has cut, in a program without M6",
+                     .hint = "Write a program for each tool, or M6 where the tool changes"};
+    second_named_line_ = line_;
+  }
+  if (reading_.tool && !cutting_ && length_.value && length_.line < tool_.line) {
+    remarks_.assume({.what = fmt::format("The tool's length in line {}", line_),
+                     .taken = fmt::format("that of {}, though {} in line {} comes before its change", tools_.now().name,
+                                          length_.code, length_.line),
+                     .key = "G43 H behind M6"});
+  }
   if (!cutting_) {
     cutting_ = true;
     cutting_tool_ = tool_.value;

@@ -181,7 +181,8 @@ TEST(GcodeMachine, AnotherToolIsRejectedOnceOneHasCut) {
   expect_rejected(
       "T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG0 Z5\nM6 T2\nM3\nG0 X5\nG1 Z0\nX6\nM6\n#1=3\nT3 M6\nX1\nM30\nT4 M6\n",
       "part:5: M6: mounts another tool than the one that has cut, whose length is not known here, and line 8 "
-      "cuts; the program mounts T1 (line 1), T2 (line 5), T2 (line 10), T3 (line 12). Write a program for each tool");
+      "cuts; the program has T1 (line 1, 4 lines), T2 (line 5, 7 lines) and T3 (line 12, 3 lines). Write a program "
+      "for each tool");
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nM6 T2\nG0 X5 Y3\nM30\n"), "") << "it does not cut";
   expect_rejected("T1 M6\nG0 X0 Y0 Z0\nG2 X2 I1 F60\nT2\nM16\nG3 X0 I-1\n", "part:5: M6: mounts another tool");
 }

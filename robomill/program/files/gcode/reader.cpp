@@ -54,6 +54,8 @@ GcodeReader::Modes GcodeReader::modes() const {
           .feed = feed_,
           .rotary_deg = rotary_deg_,
           .origin_m = origin_m().value_or(Eigen::Vector3d::Zero()),
+          .speed_rad_per_s = spindle_speed_rad_per_s_,
+          .passes = passes(),
           .special = special_};
 }
 
@@ -149,6 +151,16 @@ void GcodeReader::carry_out(Line& line) {
   check_points(line);
   set_up(line);
   if (line.system) choose_system(line);
+  if (passes()) {
+    take_feed(line);
+    pass_over(line);
+  } else {
+    carry_out_part(line);
+  }
+  if (line.call) call_program(line);
+}
+
+void GcodeReader::carry_out_part(Line& line) {
   if (line.dwells) wait(line);
   leave_out_rest(line);
   if (!line.left_out.empty()) skip(line.left_out);
@@ -185,7 +197,6 @@ void GcodeReader::carry_out(Line& line) {
     highest_m_ = highest_known_ ? std::max(highest_m_, begin_m) : begin_m;
     highest_known_ = true;
   }
-  if (line.call) call_program(line);
   if (start_) stop_after_ = line.stop;
   if (!ready_) ready_ = advance();
 }
@@ -296,12 +307,55 @@ void GcodeReader::wait(const Line& line) {
   dwell(time_s);
 }
 
+void GcodeReader::pass_over(const Line& line) {
+  special_ = true;
+  const bool named = any(line.position) || any(line.rotary);
+  switch (line.special) {
+    case Special::home:
+    case Special::machine:
+      for (std::size_t i = 0; i < 3; ++i) lost_rotary_[i] = lost_rotary_[i] || line.rotary[i] || !named;
+      tools_.move(line_);
+      return;
+    case Special::local:
+      set_local(line);
+      return;
+    case Special::shift:
+      // Where the tool stands is not followed here.
+      if (any(line.position)) shift_lost_ = {.value = true, .line = line_, .code = "G92"};
+      return;
+    case Special::shift_reset:
+      shift_m_.setZero();
+      shift_lost_ = {};
+      return;
+    case Special::table:
+      set_table(line);
+      return;
+    case Special::noted:
+      check_noted(line);
+      return;
+    case Special::none:
+      break;
+  }
+  if (line.dwells || !(line.moves() || line.cycle)) return;
+  if (any(line.position) && !passed_system_) passed_system_ = system_;
+  tools_.move(line_);
+  const bool straight = motion_ == Motion::rapid || motion_ == Motion::feed;
+  if (straight) {
+    pose_.axis = axis_after(line);
+  } else if (any(line.rotary)) {
+    by_rotary_ = true;
+    turn_rotary(line);
+    pose_.axis = turn_from(rotary_deg_).axis_at(1.0);
+  }
+}
+
 Eigen::Vector3d GcodeReader::position_after(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
   Eigen::Vector3d position = pending_ ? pending_->tip_m : pose_.tip_m;
   if (!base_ && any(line.position)) {
     base_ = system_;
     if (const auto table = tables_m_.find(system_.value); table != tables_m_.end()) base_table_m_ = table->second;
+    note_other_base();
   }
   const Eigen::Vector3d origin = origin_m().value_or(Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < 3; ++i) {
@@ -406,6 +460,7 @@ void GcodeReader::go(const Line& line) {
   if (motion_ == Motion::none) {
     reject("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
   }
+  begin_part_move();
   if (is_elsewhere(line)) return;
   switch (motion_) {
     case Motion::none:
@@ -428,6 +483,9 @@ void GcodeReader::go_straight(const Line& line) {
   }
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
   if (pending_ && motion_ == Motion::feed) reject_unknown(unknown_axis() == nullptr ? "X, Y, Z" : unknown_axis());
+  // From a height that the change of the tool has left unknown no move at feed begins.
+  const bool begins_unknown = !start_ && reading_.tool && lost_.value && motion_ == Motion::feed;
+  if (const char* const first = unknown_axis(); begins_unknown && first != nullptr) reject_unknown(first);
   const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const char* const unknown = unknown_axis();
   if (unknown != nullptr && motion_ == Motion::feed) reject_unknown(unknown);

@@ -34,10 +34,16 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> feed = {};                       ///< under G94, a minute
     Eigen::Vector3d rotary_deg = Eigen::Vector3d::Zero();  ///< A, B, C
     Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();    ///< where X0 Y0 Z0 lies in W
+    double speed_rad_per_s = 0.0;
+    bool passes = false;   ///< the last line is in a part of a tool that is not chosen
     bool special = false;  ///< the last line's words of positions are no ends of its move, or it makes no move of them
   };
   [[nodiscard]] Modes modes() const;
 
+  /// Whether T alone changes the tool: the program has T words and no M6.
+  [[nodiscard]] static bool changes_tool_by_t(ProgramLines lines, const std::string& file);
+  /// … where a tool is chosen; else T prepares what M6 mounts.
+  void set_changes_tool_by_t() { by_t_ = true; }
   /// Whoever takes calls has the lines of the file; else lines that call are rejected.
   void allow_calls() { calls_allowed_ = true; }
   /// How many calls deep the next line is.
@@ -126,6 +132,9 @@ class GcodeReader final : public ProgramReader {
   /// Of a line without words.
   void read_wordless();
   void carry_out(Line& line);
+  void carry_out_part(Line& line);
+  /// Modes, frames and the tool's axis alone.
+  void pass_over(const Line& line);
   /// @throws InvalidInput where words of a line do not go together
   void check_line(const Line& line) const;
   void leave_out_rest(Line& line) const;
@@ -166,6 +175,8 @@ class GcodeReader final : public ProgramReader {
   // frames.cpp
   void choose_system(const Line& line);
   [[nodiscard]] bool is_frame_number(const Line& line) const;
+  /// W is the frame of the chosen tool's first position, which may be another one than the program begins in.
+  void note_other_base() const;
   /// Where X0 Y0 Z0 lies in W; empty where that is not known.
   [[nodiscard]] std::optional<Eigen::Vector3d> origin_m() const;
   void set_local(const Line& line);
@@ -213,7 +224,8 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] std::optional<Change> setup_change(const Line& line) const;
   [[nodiscard]] bool center_point_lost(const Line& line) const;
   [[noreturn]] void reject_change(const Change& change) const;
-  void mount(double number);
+  void mount(double number, const char* code);
+  void name_tool(double number);
   void list_tools(std::string_view statement);
   void begin_cutting();
 
@@ -286,13 +298,13 @@ class GcodeReader final : public ProgramReader {
   Said<CenterPoint> center_point_;
   bool cutting_ = false;  ///< a move at feed has come
   std::size_t cutting_line_ = 0;
-  struct Mounted {
-    double number;
-    std::size_t line;
-  };
-  std::vector<Mounted> mounted_;  ///< tools, by M6
-  std::size_t mounted_count_ = 0;
-  std::optional<Change> second_tool_;  ///< that cuts: from here on tools alone are looked at
+  bool by_t_ = false;  ///< T mounts the tool
+  bool m6_has_come_ = false;
+  Said<std::optional<double>> named_, named_cutting_;  ///< by T, while no M6 has come; the one that cut first
+  std::optional<Change> second_named_;                 ///< that cuts
+  std::size_t second_named_line_ = 0;
+  std::optional<Said<int>> passed_system_;  ///< of the first position that is not read
+  std::optional<Change> second_tool_;       ///< that cuts: from here on tools alone are looked at
   std::size_t second_tool_line_ = 0;
   std::optional<double> cutting_tool_, cutting_length_;
 
