@@ -128,6 +128,7 @@ void AptReader::read(std::string_view statement) {
     return;
   }
   shown_ = printable(io::trimmed(statement), shown_letters);
+  if (passes() && pass_over()) return;
   for (const Statement& known : statements()) {
     if (word_ == known.word) {
       (this->*known.take)();
@@ -143,6 +144,21 @@ void AptReader::read(std::string_view statement) {
     rest.remove_prefix(comma + 1);
   }
   skip_statement();
+}
+
+bool AptReader::pass_over() {
+  if (word_ == "CYCLE" || word_ == "CUTCOM") {
+    const bool off = fields_.size() == 1 && (fields_[0] == "OFF" || fields_[0] == "NOMORE");
+    passed_switch_ = off ? std::string() : shown_;
+    return true;
+  }
+  constexpr std::array<std::string_view, 4> order = {"CALL", "JUMPTO", "LOOPST", "INDEX"};
+  const std::string_view first = word_.substr(0, word_.find(','));
+  const auto* const found = std::ranges::find(moving, first, &Moving::word);
+  const bool moves = found != moving.end() && found->hint == as_moves;
+  if (!moves || std::ranges::find(order, first) != order.end()) return false;
+  tools_.move(line_);
+  return true;
 }
 
 void AptReader::reject_motion() const {
@@ -223,6 +239,9 @@ void AptReader::go(const Pose& end) {
   const bool rapid = rapid_;
   rapid_ = false;
   begin_part_move();
+  if (!passed_switch_.empty() && !passes()) {
+    reject_text("LOADTL", passed_switch_, "of another tool is still on where this one moves", "Is its OFF missing?");
+  }
   if (!start_ || passes()) {
     begin_at(end);
     return;

@@ -41,6 +41,8 @@ class AptReader final : public ProgramReader {
   static const std::vector<Statement>& statements();
 
   void read(std::string_view statement) override;
+  /// Whether a statement moves a tool that is not chosen, and so counts for nothing.
+  bool pass_over();
   void at_end() override;
 
   void split(std::string_view statement);
@@ -82,6 +84,7 @@ class AptReader final : public ProgramReader {
   std::string tool_, cutting_tool_;  ///< as LOADTL names it; the one of the moves at feed
   std::size_t tool_line_ = 0;
   /// Of the first other tool that moves, and of its move: from here on tools alone are looked at.
+  std::string passed_switch_;  ///< of those tools: a cycle or a compensation that is on
   std::size_t second_tool_line_ = 0, second_move_line_ = 0;
   bool cutting_ = false;  ///< a move at feed has come
   std::string system_;    ///< the coordinate system's statement

@@ -188,10 +188,13 @@ class Walk {
     }
     std::vector<std::string> texts;
     std::optional<int> first;
+    bool first_reads = false;
     for (const ToolPart& tool : tools) {
       if (texts.size() == most_named) break;
-      if (tool.number && !first) first = tool.number;
       const std::string contents = tool.number && again_ ? ", " + contents_of(*tool.number) : "";
+      const bool reads = !contents.starts_with(", cannot");
+      if (tool.number && (!first || (reads && !first_reads))) first = tool.number;
+      first_reads = first_reads || (tool.number && reads);
       texts.push_back(fmt::format("{} (line {}, {} line{}{})", tool.name, tool.line, tool.lines,
                                   tool.lines == 1 ? "" : "s", contents));
     }

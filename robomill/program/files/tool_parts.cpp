@@ -16,8 +16,8 @@ InvalidInput::Parts with_tools(InvalidInput::Parts parts, const std::vector<Tool
   std::vector<std::string> texts;
   for (const ToolPart& part : tools) {
     if (texts.size() == most_named) break;
-    texts.push_back(fmt::format("{} (line {}, {} line{})", part.name, part.line, part.lines,
-                                part.lines == 1 ? "" : "s"));
+    texts.push_back(
+        fmt::format("{} (line {}, {} line{})", part.name, part.line, part.lines, part.lines == 1 ? "" : "s"));
   }
   parts.rule += "; the program has " + list_text(texts, count - texts.size());
   return parts;

@@ -87,10 +87,11 @@ TEST(Tools, OneIsChosen) {
 }
 
 TEST(Tools, WithoutAChoiceTheErrorListsThem) {
-  EXPECT_EQ(said_of(two, {}),
-            "part.nc:8: M6: mounts another tool than the one that has cut, whose length is not known here, and line 12 "
-            "cuts; the program has T4 (line 2, 6 lines, 3 moves, 4.2 s at feed) and T6 (line 8, 8 lines, 3 moves, 2 s at "
-            "feed). program.tool = 4 in the cell reads that tool's part alone");
+  EXPECT_EQ(
+      said_of(two, {}),
+      "part.nc:8: M6: mounts another tool than the one that has cut, whose length is not known here, and line 12 "
+      "cuts; the program has T4 (line 2, 6 lines, 3 moves, 4.2 s at feed) and T6 (line 8, 8 lines, 3 moves, 2 s at "
+      "feed). program.tool = 4 in the cell reads that tool's part alone");
   std::string plunges = two;
   plunges.erase(plunges.find("Z3\n"), 3);
   expect_rejected(plunges, {},
@@ -109,16 +110,14 @@ TEST(Tools, OneThatIsNotThereIsRejected) {
 }
 
 TEST(Tools, PartsThatAreNotReadStillSayModes) {
-  const std::string inches =
-      "G20 G91\nT1 M6\nG0 X1 Y1 Z1\nG2 X1 I7 F1\nG17 G90\nF10\nT2 M6\nG0 X1 Y0 Z0\nG1 X2\nM30\n";
+  const std::string inches = "G20 G91\nT1 M6\nG0 X1 Y1 Z1\nG2 X1 I7 F1\nG17 G90\nF10\nT2 M6\nG0 X1 Y0 Z0\nG1 X2\nM30\n";
   const Program program = read(inches, 2);
   expect_at(program.start, 25.4, 0, 0);
   EXPECT_NEAR(sums_of(program).time_s, 6.0, 1e-9) << "an arc that could not be read alone does not count";
-  const std::string turned =
-      "G21\nT1 M6\nG0 X0 Y0 Z0 A0 C0\nG1 X1 A-30 C90 F60\nT2 M6\nG0 X5 Y0 Z0\nG1 X6\nM30\n";
-  EXPECT_LT((read(turned, 2).start.axis - tool_axis(Machine::xyzac_trt, -30.0 * units::deg, 0.0, 90.0 * units::deg))
-                .norm(),
-            1e-12)
+  const std::string turned = "G21\nT1 M6\nG0 X0 Y0 Z0 A0 C0\nG1 X1 A-30 C90 F60\nT2 M6\nG0 X5 Y0 Z0\nG1 X6\nM30\n";
+  EXPECT_LT(
+      (read(turned, 2).start.axis - tool_axis(Machine::xyzac_trt, -30.0 * units::deg, 0.0, 90.0 * units::deg)).norm(),
+      1e-12)
       << "the rotary axes stay where the other tool's part has left them";
   const std::string local = "G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG52 X10\nT2 M6\nG0 X0 Y0 Z0\nG1 X1\nM30\n";
   expect_at(read(local, 2).start, 10, 0, 0);
@@ -134,7 +133,8 @@ TEST(Tools, PartsThatAreNotReadStillSayModes) {
 
 // What T6 cuts between the parts of T4 is missing in those of T4 alone.
 TEST(Tools, OneThatComesBackIsRejected) {
-  const std::string back = "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG0 X0 Y0 Z0\nG1 Z-1\nM30\n";
+  const std::string back =
+      "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG0 X0 Y0 Z0\nG1 Z-1\nM30\n";
   expect_rejected(back, 4, "part.nc:8: T4: moves again in this line after T6 (line 4) has moved");
   EXPECT_EQ(read(back, 6).blocks.size(), 1U);
   expect_rejected(back, {}, "T4 (line 1, 7 lines, cannot be read alone: line 8: T4 moves again");
@@ -150,9 +150,10 @@ TEST(Tools, TAloneChangesThemWhereNoM6Does) {
   EXPECT_NEAR(sums_of(program).time_s, 4.0, 1e-12);
   ASSERT_EQ(program.assumed.size(), 1U);
   EXPECT_EQ(program.assumed[0].what, "T without an M6");
-  expect_rejected(named, {},
-                  "part.nc:5: T2: names another tool than the one that has cut, in a program without M6, and line 7 "
-                  "cuts; the program has T1 (line 1, 4 lines, 1 move, 1 s at feed) and T2 (line 5, 4 lines, 1 move, 4 s");
+  expect_rejected(
+      named, {},
+      "part.nc:5: T2: names another tool than the one that has cut, in a program without M6, and line 7 "
+      "cuts; the program has T1 (line 1, 4 lines, 1 move, 1 s at feed) and T2 (line 5, 4 lines, 1 move, 4 s");
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nG1 X1 F60\nT3\nX2\nM30\n", {}), "") << "made ready";
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nG1 X1 F60\nT3\nX2\nM30\n", 1), "");
   EXPECT_EQ(said_of("T1\nG0 X0 Y0 Z0\nG1 X1 F60\nM30\n", {}), "");
@@ -170,16 +171,36 @@ TEST(Tools, OfApt) {
   const Program second = read(file, 2, "part.apt");
   expect_at(second.start, 0, 5, 10);
   EXPECT_NEAR(sums_of(second).time_s, 60.0 * (10.0 / 100.0 + 1.0 / 200.0), 1e-9);
+  expect_rejected(
+      file, {},
+      "part.apt:11: LOADTL: mounts another tool than the one that has cut, whose length is not known here, and "
+      "line 14 moves it; the program has",
+      "part.apt");
   expect_rejected(file, {},
-                  "part.apt:11: LOADTL: mounts another tool than the one that has cut, whose length is not known here, and "
-                  "line 14 moves it; the program has",
-                  "part.apt");
-  expect_rejected(file, {}, "T1 (line 4, 7 lines, 2 moves, 12 s at feed) and T2 (line 11, 7 lines, 2 moves, 6.3 s at feed)",
+                  "T1 (line 4, 7 lines, 2 moves, 12 s at feed) and T2 (line 11, 8 lines, 2 moves, 6.3 s at feed)",
                   "part.apt");
   expect_rejected(file, 3, "program.tool = 3; is no tool of this program: it has T1 (line 4) and T2 (line 11)",
                   "part.apt");
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2\nGOTO/0,0,9\nLOADTL/1\nGOTO/2,0,0\nFINI\n", 1,
                   "part.apt:8: T1: moves again in this line after T2 (line 5) has moved", "part.apt");
+}
+
+// Cycles, compensation and arcs of another tool count for nothing, unless they are still on.
+TEST(Tools, WhatAptDoesWithOthersIsPassed) {
+  const auto file = [](const std::string& others) {
+    return "LOAD/TOOL,1\nFEDRAT/60\nGOTO/0,0,9\n" + others + "LOAD/TOOL,2\nGOTO/0,0,5\nGOTO/0,0,0\nFINI\n";
+  };
+  EXPECT_NEAR(sums_of(read(file("CYCLE/DRILL,5\nGOTO/1,0,0\nCYCLE/OFF\nCUTCOM/LEFT\nGOTO/2,0,0\nCUTCOM/OFF\n"
+                                "CIRCLE/0,0,0,0,0,1,5\nINDIRV/1,0,0\nTLON,GOFWD/(LINE)\n"),
+                           2, "part.apt"))
+                  .time_s,
+              5.0, 1e-9);
+  expect_rejected(file("CUTCOM/LEFT\n"), 2,
+                  "part.apt:6: LOADTL = \"CUTCOM/LEFT\"; of another tool is still on where this one moves", "part.apt");
+  for (const char* statement : {"TRANS/1,2,3", "ROTABL/30", "CALL/A", "TRACUT/1,0,0,0", "JUMPTO/A"}) {
+    expect_rejected(file(std::string(statement) + "\n"), 2, "part.apt:4: ", "part.apt");
+  }
+  expect_rejected(file("CYCLE/DRILL,5\n"), 1, "part.apt:4: CYCLE", "part.apt");
 }
 
 Rewritten rewrite(const std::string& text, int tool, double speed, double feed, const std::string& name = "part.nc") {
@@ -227,8 +248,8 @@ TEST(Tools, ARewritingEndsWhereTheNextPartBegins) {
   EXPECT_NE(rewrite_program_text(two, "part.nc", reading, program, wanted).text.find("X38 Y21"), std::string::npos);
 }
 
-// Random programs of three tools: each part is what it is as a file of its own behind the same modes, and a rewriting of
-// one leaves the others.
+// Random programs of three tools: each part is what it is as a file of its own behind the same modes, and a rewriting
+// of one leaves the others.
 TEST(Tools, EachPartIsAProgramOfItsOwn) {
   for (int seed = 0; seed < test::seeds(200); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -258,6 +279,42 @@ TEST(Tools, EachPartIsAProgramOfItsOwn) {
       const std::string again = rewrite(text, tool + 1, 0.7, 1.3).text;
       for (int other = 0; other < 3; ++other) {
         EXPECT_EQ(again.find(parts[static_cast<std::size_t>(other)]) == std::string::npos, other == tool) << again;
+      }
+    }
+  }
+}
+
+// Any text is read or rejected, and what is read is finite.
+TEST(Tools, ChangedTextIsReadOrRejected) {
+  const std::string planes =
+      "G21 G90 G17\nT1 M6\nS900 M3\nG0 X0 Y0 Z9\nG68 X1 Y2 R30\nG1 X9 ,R2 F60\nY9 ,C1\nX0\nG69\nG91 G28 Z0\nG90\nT2 "
+      "M6\n"
+      "G68.2 X1 Y2 Z3 I10 J20 K30\nG53.1\nG0 X0 Y0\nZ5\nG1 Z-1\nG2 X4 I2\nG0 Z5\nG69\nG55\nT1\nM30\n";
+  const std::string letters = "GMTXYZIJKRCF,.-0123456789 \n/%(;";
+  for (int seed = 0; seed < test::seeds(4000); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    std::string text = random.uniform() < 0.3 ? two : planes;
+    const std::uint64_t changes = 1 + random.index(4);
+    for (std::uint64_t i = 0; i < changes; ++i) {
+      const std::size_t at = random.index(text.size());
+      const double kind = random.uniform();
+      if (kind < 0.4) {
+        text[at] = letters[random.index(letters.size())];
+      } else if (kind < 0.7) {
+        text.insert(at, 1, letters[random.index(letters.size())]);
+      } else {
+        text.erase(at, 1 + random.index(9));
+      }
+    }
+    for (const std::optional<int> tool : {std::optional<int>(), std::optional<int>(1), std::optional<int>(2)}) {
+      try {
+        const Program program = read(text, tool);
+        for (const Block& block : program.blocks) {
+          ASSERT_TRUE(block.end.tip_m.allFinite() && block.end.axis.allFinite() && block.duration_s >= 0.0) << text;
+          ASSERT_NEAR(block.end.axis.norm(), 1.0, 1e-9) << text;
+        }
+      } catch (const InvalidInput& error) {
+        ASSERT_NE(std::string(error.what()).find("part.nc"), std::string::npos) << text << error.what();
       }
     }
   }

@@ -167,7 +167,7 @@ void GcodeReader::set_table(const Line& line) {
 
 void GcodeReader::lose(std::size_t axis, const std::string& code) {
   if (start_ && !pending_) pending_ = pose_;
-  known_[axis] = false;
+  lose_machine_axis(axis);
   lost_ = {.value = true, .line = line_, .code = code};
 }
 
@@ -184,7 +184,14 @@ void GcodeReader::go_home(const Line& line) {
     if (!line.position[i]) continue;
     said += fmt::format(" {}{:g}", axis_names[i], *line.position[i]);
     const Eigen::Index axis = axis_of(i);
-    if (origin) point.tip_m[axis] = *line.position[i] * unit_m() + (incremental_ ? pose_.tip_m : *origin)[axis];
+    if (tilted_ && !(incremental_ && *line.position[i] == 0.0)) {
+      reject(axis_names[i], *line.position[i], unit_name(),
+             fmt::format("is a point on the way of {} while {} (line {}) is on, which is not read", code, tilted_->code,
+                         tilted_->line),
+             fmt::format("Write G91 {} Z0", code));
+    }
+    if (origin && !tilted_)
+      point.tip_m[axis] = *line.position[i] * unit_m() + (incremental_ ? pose_.tip_m : *origin)[axis];
     check_coordinate(axis_names[i], point.tip_m[axis], *line.position[i], unit_name());
   }
   skip(said);
@@ -241,9 +248,9 @@ bool GcodeReader::is_elsewhere(const Line& line) {
   // A machine may add the length of the tool, or another frame: only where that comes back positions are known again.
   for (std::size_t i = 0; i < 3; ++i) {
     const bool loses = of_length ? i == 2 : line.position[i].has_value();
-    if (loses) lose(i, change->code);
+    if (loses || tilted_) lose(i, change->code);
   }
-  if (of_length && pending_) {
+  if (of_length && pending_ && !tilted_) {
     for (std::size_t i = 0; i < 2; ++i) {
       const auto axis = axis_of(i);
       const std::optional<Vector3d> origin = origin_m();

@@ -1,4 +1,4 @@
-// What a program in G-code says to its machine: M codes, tools, lengths, the tool centre point.
+// What a program in G-code says to its machine: M codes, lengths, the tool centre point, rotary axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/program/files/gcode/reader.hpp"
 
 namespace robomill::program {
@@ -30,6 +32,10 @@ std::string meaning_of(const Mcode& code) {
     }
   }
   return out;
+}
+
+bool has_axis(Machine machine, std::size_t rotary) {
+  return rotary == 2 || static_cast<Eigen::Index>(rotary) == tilt_index(machine);
 }
 
 }  // namespace
@@ -133,83 +139,6 @@ void GcodeReader::set_length(const GcodeWords::Word& word, const Line& line) {
   }
 }
 
-bool GcodeReader::changes_tool_by_t(ProgramLines lines, const std::string& file) {
-  GcodeWords words;
-  std::string_view line;
-  bool names = false;
-  while (lines.next(line)) {
-    try {
-      words.scan(line, file, lines.number());
-    } catch (const InvalidInput&) {
-      continue;  // rejected when it is read
-    }
-    for (const GcodeWords::Word& word : words.words()) {
-      if (word.letter == 'm' && (word.number == 6.0 || word.number == 16.0)) return false;
-      names = names || word.letter == 't';
-    }
-  }
-  return names;
-}
-
-void GcodeReader::mount(double number, const char* code) {
-  const bool again = tool_.value == std::optional(number);
-  tool_ = {.value = number, .line = line_, .code = code};
-  if (!m6_has_come_ && !by_t_) tools_.forget();  // T words before it have mounted nothing
-  m6_has_come_ = true;
-  mount_tool(whole_tool(number), number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", number));
-  if (!reading_.tool || again || passes() || start_ || !tools_.moved()) return;
-  // The change moves the tool by itself.
-  known_ = {};
-  lost_ = {.value = true, .line = line_, .code = code};
-}
-
-// Without an M6 in the whole program, T may be what changes the tool.
-void GcodeReader::name_tool(double number) {
-  prepared_tool_ = number;
-  if (by_t_) {
-    remarks_.assume({.what = "T without an M6", .taken = "a change of the tool", .key = "M6"});
-    mount(number, "T");
-  } else if (!m6_has_come_ && !reading_.tool) {
-    named_ = {.value = number, .line = line_, .code = fmt::format("T{:g}", number)};
-    mount_tool(whole_tool(number), named_.code);
-  }
-}
-
-// What follows the first cut of a second tool is not carried out.
-void GcodeReader::list_tools(std::string_view statement) {
-  try {
-    words_.scan(statement, file_, line_);
-  } catch (const InvalidInput&) {
-    return;  // names no tool
-  }
-  bool changes = false;
-  for (const GcodeWords::Word& word : words_.words()) {
-    if (word.letter == 't') name_tool(word.number);
-    if (word.letter != 'm') continue;
-    changes = changes || word.number == 6.0 || word.number == 16.0;
-    ended_ = ended_ || word.number == 2.0 || word.number == 30.0;
-  }
-  if (changes) mount(prepared_tool_.value_or(-1.0), "M6");
-}
-
-void GcodeReader::at_end() {
-  if (!leaves_out_sub_.empty()) {
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, sub_line_),
-                                           .field = fmt::format("o{} sub", leaves_out_sub_),
-                                           .rule = "begins a subprogram that does not end",
-                                           .hint = "Is its endsub missing?"});
-  }
-  const bool named = !second_tool_ && !m6_has_come_ && second_named_;
-  if (!second_tool_ && !named) return;
-  const Change& change = named ? *second_named_ : *second_tool_;
-  const std::size_t cuts = named ? second_named_line_ : second_tool_line_;
-  throw SeveralTools({.where = fmt::format("{}:{}", file_, change.line),
-                      .field = change.code,
-                      .rule = fmt::format("{}, and line {} cuts", change.what, cuts),
-                      .hint = change.hint},
-                     tools_.parts(), tools_.count());
-}
-
 void GcodeReader::begin_cutting() {
   if (!m6_has_come_ && !named_cutting_.value) {
     named_cutting_ = named_;
@@ -239,12 +168,15 @@ void GcodeReader::begin_cutting() {
       reject(names[i], std::nullopt, "deg", "is not known where this line cuts: it went to the machine's own position",
              "Give the angle by G0 before it");
   }
-  if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero()) remarks_.no_center_point(line_);
+  const bool in_plane = tilted_ && tilted_->plane;
+  if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero() && !in_plane)
+    remarks_.no_center_point(line_);
 }
 
 bool GcodeReader::center_point_lost(const Line& line) const {
   const bool turned = line.rotary[0] || line.rotary[1] || line.rotary[2] || !rotary_deg_.isZero();
-  return center_point_.value == CenterPoint::off && turned;
+  const bool in_plane = tilted_ && tilted_->plane;  // which positions count in, whichever axes have turned
+  return center_point_.value == CenterPoint::off && turned && !in_plane;
 }
 
 std::optional<GcodeReader::Change> GcodeReader::setup_change(const Line& line) const {
@@ -264,6 +196,45 @@ std::optional<GcodeReader::Change> GcodeReader::setup_change(const Line& line) c
                   "One length holds from the first move at feed on");
   }
   return std::nullopt;
+}
+
+void GcodeReader::turn_rotary(const Line& line) {
+  static constexpr std::array<const char*, 3> names = {"A", "B", "C"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!line.rotary[i]) continue;
+    if (!reading_.machine) {
+      reject(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
+             fmt::format("Give program.machine: \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\" or \"xyzbc-head\"{}",
+                         i == 2 ? ". A corner is cut off by ,C with its comma" : ""));
+    }
+    if (!has_axis(*reading_.machine, i)) {
+      reject(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
+             "Is it the other machine, with A in place of B or B in place of A?");
+    }
+    const auto axis = static_cast<Eigen::Index>(i);
+    if (incremental_ && lost_rotary_[i]) {
+      reject(names[i], *line.rotary[i], "deg", "is a step (G91) from an angle that is not known here", "Write G90");
+    }
+    lost_rotary_[i] = false;
+    rotary_deg_[axis] = *line.rotary[i] + (incremental_ ? rotary_deg_[axis] : 0.0);
+    if (!(std::abs(rotary_deg_[axis]) <= 1e6)) {
+      reject(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
+    }
+  }
+}
+
+RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
+  return {
+      .machine = *reading_.machine, .begin_rad = rotary_before_deg * units::deg, .end_rad = rotary_deg_ * units::deg};
+}
+
+void GcodeReader::check_shortest(const RotaryMove& turn) const {
+  constexpr double half_deg = 180.0;
+  const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
+  const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
+  if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
+  reject("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
+         "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 
 }  // namespace robomill::program

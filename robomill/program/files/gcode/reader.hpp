@@ -76,6 +76,9 @@ class GcodeReader final : public ProgramReader {
     home,         ///< G28, G30: by a point to the machine's own position
     machine,      ///< G53
     local,        ///< G52
+    turned,       ///< G68
+    tilted,       ///< G68.2
+    along_plane,  ///< G53.1
     shift,        ///< G92
     shift_reset,  ///< G92.1, G92.2
     table,        ///< G10
@@ -90,14 +93,15 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> feed = {}, radius = {}, e = {};
     std::optional<GcodeWords::Word> p = {}, q = {}, l = {};
     Special special = Special::none;
-    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {}, other_unit = {};
+    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {}, other_unit = {}, corner = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
     std::optional<double> tool = {}, h = {};
     std::optional<GcodeWords::Word> length = {};  ///< the code of the tool's length
     std::optional<GcodeWords::Word> center_point = {};
     OperatorStop stop = OperatorStop::none;
-    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false, cycle_off = false;
+    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false, cycle_off = false,
+         frame_off = false;
     std::string left_out = {};
     [[nodiscard]] bool has(char letter) const;
     [[nodiscard]] bool moves() const;
@@ -116,6 +120,13 @@ class GcodeReader final : public ProgramReader {
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
 
+  /// What holds during a move that comes later.
+  struct Running {
+    double speed_rad_per_s = 0.0;
+    Spindle spindle = Spindle::not_given;
+    Coolant coolant = {};
+  };
+
   /// A move of a line that makes several.
   struct Step {
     Block::Kind kind = Block::Kind::rapid;
@@ -124,6 +135,29 @@ class GcodeReader final : public ProgramReader {
     std::optional<Eigen::Vector3d> axis = {};  ///< none: as it stands
     std::optional<Spindle> spindle = {};       ///< from here on
     OperatorStop stop = OperatorStop::none;
+    std::size_t line = 0;  ///< that says it; 0: the one that was taken
+    double tip_deviation_m = 0.0;
+    std::optional<Running> running = {};  ///< none: what holds now
+  };
+
+  /// A corner between the move to it, which waits, and the next one.
+  struct Corner {
+    std::size_t line = 0;
+    std::string name = {};  ///< ",R" or ",C"
+    double size_m = 0.0;
+    Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+    Eigen::Index normal = 2;  ///< of its plane
+    double s_per_m = 0.0;     ///< at the feed of its line
+    Running running = {};
+  };
+
+  /// Axes that words of positions count along, while they are not those of the work frame.
+  struct Tilted {
+    std::size_t line = 0;
+    std::string code = {};
+    bool plane = false;                                  ///< a plane in space that the tool can be turned to
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< in the work frame's, in columns
+    Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< from that of the work frame, along its axes
   };
 
   void read(std::string_view statement) override;
@@ -196,6 +230,37 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] const char* unknown_axis() const;
   [[noreturn]] void reject_unknown(const char* axis) const;
 
+  // planes.cpp
+  /// @throws InvalidInput where a line cannot turn or tilt a plane
+  void check_may_tilt(const Line& line) const;
+  /// … or would change the work frame beneath one.
+  void check_frame_stays(const Line& line) const;
+  void tilt(const Line& line);
+  void turn_plane(const Line& line);
+  void end_tilt();
+  void change_axes(const std::optional<Tilted>& to);
+  /// A position along an axis of the machine is not known from here on.
+  void lose_machine_axis(std::size_t axis);
+  void turn_to_plane(const Line& line);
+  /// A point of W as the words of positions count while a plane is turned, and back; else the same.
+  [[nodiscard]] Eigen::Vector3d in_program(const Eigen::Vector3d& point_m) const;
+  [[nodiscard]] Eigen::Vector3d out_of_program(const Eigen::Vector3d& point_m) const;
+  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& vector) const;
+
+  // corners.cpp
+  void take_corner(const GcodeWords::Word& word, Line& line);
+  [[noreturn]] void reject_no_begin(const GcodeWords::Word& corner) const;
+  [[noreturn]] void reject_corner(std::string rule, std::string hint) const;
+  /// @throws InvalidInput where a corner stands or waits beside what is no straight move
+  void check_corner(const Line& line) const;
+  /// A vector's components in the plane of arcs, and back.
+  [[nodiscard]] Eigen::Vector2d in_plane(const Eigen::Vector3d& vector) const;
+  [[nodiscard]] Eigen::Vector3d out_of_plane(const Eigen::Vector2d& vector) const;
+  /// A straight move with a corner at its end or its begin.
+  void go_by_corner(const Line& line, const Eigen::Vector3d& end_m);
+  /// The move to the corner that waits, and the corner.
+  void cut_corner(const Eigen::Vector3d& next_m);
+
   // cycles.cpp
   void choose_cycle(int code, const GcodeWords::Word& word, Line& line);
   void update_cycle(const Line& line);
@@ -211,7 +276,7 @@ class GcodeReader final : public ProgramReader {
   void call_program(const Line& line);
   void control(const OWord& word);
 
-  // gcode_machine.cpp
+  // tools.cpp and machine.cpp
   void take_m(const GcodeWords::Word& word, Line& line);
   void set_up(const Line& line);
   void set_length(const GcodeWords::Word& word, const Line& line);
@@ -240,7 +305,7 @@ class GcodeReader final : public ProgramReader {
   /// Of an arc's radius where its line has so many decimals.
   [[nodiscard]] double rounding_m(int decimals) const;
   void note_rounding(const Arc& arc, double chord_m, double strict_m) const;
-  [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_m) const;
+  [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_in_w_m) const;
   [[nodiscard]] double turns_of(const Line& line) const;
 
   GcodeWords words_;
@@ -282,6 +347,8 @@ class GcodeReader final : public ProgramReader {
     bool to_r = false;  ///< G99
   };
   Cycle cycle_;
+  std::optional<Corner> corner_;
+  std::optional<Tilted> tilted_;
   std::vector<Step> steps_;
   std::size_t next_step_ = 0;
 

@@ -436,7 +436,8 @@ Rewriter::Composed GcodeRewriter::compose_special(std::size_t index) const {
   }
   if (!same && statement.blocks > 0) {
     reject(statement.line, "tip",
-           "cannot be moved where a line drills by a cycle or brings the tool back from the machine's own position",
+           "cannot be moved where a line drills by a cycle, rounds a corner, lies in a turned plane or brings the tool "
+           "back from the machine's own position",
            "Let the CAM system write its moves as G0 and G1");
   }
   Composed composed;
@@ -454,7 +455,7 @@ void GcodeRewriter::check_cycle_feed(const Statement& statement) const {
     const double this_ratio = job().wanted.blocks[i].duration_s / block.duration_s;
     if (!ratio) ratio = this_ratio;
     if (same_rate(this_ratio, *ratio)) continue;
-    reject(statement.line, "feed", "must be one for all moves of the drilling cycle that this line says",
+    reject(statement.line, "feed", "must be one for all moves of the drilling cycle or the corner that this line says",
            "The line has one F");
   }
 }
