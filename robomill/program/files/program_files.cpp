@@ -186,20 +186,20 @@ class Walk {
         found->lines += part.lines;
       }
     }
-    std::vector<std::string> texts;
+    std::vector<std::string> listed;
     std::optional<int> first;
     bool first_reads = false;
     for (const ToolPart& tool : tools) {
-      if (texts.size() == most_named) break;
+      if (listed.size() == most_named) break;
       const std::string contents = tool.number && again_ ? ", " + contents_of(*tool.number) : "";
       const bool reads = !contents.starts_with(", cannot");
       if (tool.number && (!first || (reads && !first_reads))) first = tool.number;
       first_reads = first_reads || (tool.number && reads);
-      texts.push_back(fmt::format("{} (line {}, {} line{}{})", tool.name, tool.line, tool.lines,
-                                  tool.lines == 1 ? "" : "s", contents));
+      listed.push_back(fmt::format("{} (line {}, {} line{}{})", tool.name, tool.line, tool.lines,
+                                   tool.lines == 1 ? "" : "s", contents));
     }
     InvalidInput::Parts parts = error.bare();
-    parts.rule += "; the program has " + list_text(texts, tools.size() - texts.size());
+    parts.rule += "; the program has " + list_text(listed, tools.size() - listed.size());
     if (first) parts.hint = fmt::format("program.tool = {} in the cell reads that tool's part alone", *first);
     return parts;
   }

@@ -205,23 +205,23 @@ void ProgramReader::note_passed(std::size_t lines) const {
 void ProgramReader::check_chosen() const {
   if (!reading_.tool || start_) return;
   constexpr std::size_t most_named = 12;
-  std::vector<std::string> texts;
+  std::vector<std::string> listed;
   std::vector<int> named;
   bool mounted = false;
   for (const ToolPart& part : tools_.parts()) {
     mounted = mounted || part.number == reading_.tool;
     if (!part.number || std::ranges::find(named, *part.number) != named.end()) continue;
     named.push_back(*part.number);
-    if (texts.size() < most_named) texts.push_back(fmt::format("{} (line {})", part.name, part.line));
+    if (listed.size() < most_named) listed.push_back(fmt::format("{} (line {})", part.name, part.line));
   }
   InvalidInput::Parts parts = {.where = file_, .field = "program.tool", .number = *reading_.tool};
   if (mounted) {
     parts.rule = "comes to no complete position: X, Y and Z after its change";
-  } else if (texts.empty()) {
+  } else if (listed.empty()) {
     parts.rule = "is no tool of this program, which names none";
     parts.hint = "Take the key out to read the whole program";
   } else {
-    parts.rule = "is no tool of this program: it has " + list_text(texts, named.size() - texts.size());
+    parts.rule = "is no tool of this program: it has " + list_text(listed, named.size() - listed.size());
   }
   throw InvalidInput(std::move(parts));
 }

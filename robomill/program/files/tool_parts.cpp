@@ -13,13 +13,13 @@ constexpr std::size_t most_parts = 100;  ///< that are kept
 constexpr std::size_t most_named = 12;
 
 InvalidInput::Parts with_tools(InvalidInput::Parts parts, const std::vector<ToolPart>& tools, std::size_t count) {
-  std::vector<std::string> texts;
+  std::vector<std::string> listed;
   for (const ToolPart& part : tools) {
-    if (texts.size() == most_named) break;
-    texts.push_back(
+    if (listed.size() == most_named) break;
+    listed.push_back(
         fmt::format("{} (line {}, {} line{})", part.name, part.line, part.lines, part.lines == 1 ? "" : "s"));
   }
-  parts.rule += "; the program has " + list_text(texts, count - texts.size());
+  parts.rule += "; the program has " + list_text(listed, count - listed.size());
   return parts;
 }
 
@@ -76,11 +76,11 @@ std::size_t ToolParts::count() const {
   return over_count_ + (counts(now_) ? 1 : 0);
 }
 
-std::string list_text(const std::vector<std::string>& texts, std::size_t more) {
+std::string list_text(const std::vector<std::string>& listed, std::size_t more) {
   std::string out;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const bool last = i + 1 == texts.size() && more == 0;
-    out += fmt::format("{}{}", i == 0 ? "" : last ? " and " : ", ", texts[i]);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    const bool last = i + 1 == listed.size() && more == 0;
+    out += fmt::format("{}{}", i == 0 ? "" : last ? " and " : ", ", listed[i]);
   }
   if (more > 0) out += fmt::format(" and {} more", more);
   return out;

@@ -62,7 +62,7 @@ class ToolParts {
 };
 
 /// "a, b and c", and how many more there are.
-[[nodiscard]] std::string list_text(const std::vector<std::string>& texts, std::size_t more);
+[[nodiscard]] std::string list_text(const std::vector<std::string>& listed, std::size_t more);
 
 /// A program cuts with several tools, and none is chosen.
 class SeveralTools final : public InvalidInput {

@@ -35,8 +35,8 @@ void GcodeReader::take_corner(const GcodeWords::Word& word, Line& line) {
 }
 
 void GcodeReader::reject_no_begin(const GcodeWords::Word& corner) const {
-  reject(corner_name(corner), corner.number, unit_name(), "needs a move to its corner: this line gives the first position",
-         "Begin with a G0 to X, Y and Z");
+  reject(corner_name(corner), corner.number, unit_name(),
+         "needs a move to its corner: this line gives the first position", "Begin with a G0 to X, Y and Z");
 }
 
 void GcodeReader::reject_corner(std::string rule, std::string hint) const {

@@ -110,7 +110,8 @@ TEST(GcodeCorners, KeepWhatTheirLineSays) {
 
 TEST(GcodeCorners, WhatTheyCannotStandBesideIsRejected) {
   const std::string begin = "G0 X0 Y0 Z0\nG1 X10 ,R2 F60\n";
-  expect_rejected(begin + "G2 X20 I5\n", "part:2: ,R: needs a straight move G1 in the same plane right after it, and line 3");
+  expect_rejected(begin + "G2 X20 I5\n",
+                  "part:2: ,R: needs a straight move G1 in the same plane right after it, and line 3");
   for (const char* next : {"G0 Y10", "M30", "M8", "G55 Y10", "G4 P1", "T2 M6", "G18 Y10", "G28 Y0", "G69 Y1"}) {
     expect_rejected(begin + next + "\n", "part:2: ,R: needs a straight move");
   }
@@ -158,8 +159,8 @@ TEST(GcodeCorners, ARoundedCornerTouchesBothMoves) {
     const double cut = r * std::tan(0.5 * std::abs(turn));
     const Eigen::Vector3d corner = (cut + 5.0) * direction(first);
     const Eigen::Vector3d end = corner + (cut + 7.0) * direction(first + turn);
-    const Program program = read(fmt::format("G0 X0 Y0 Z0\nG1 X{:.9f} Y{:.9f} ,R{:.9f} F60\nX{:.9f} Y{:.9f}\n", corner.x(),
-                                             corner.y(), r, end.x(), end.y()));
+    const Program program = read(fmt::format("G0 X0 Y0 Z0\nG1 X{:.9f} Y{:.9f} ,R{:.9f} F60\nX{:.9f} Y{:.9f}\n",
+                                             corner.x(), corner.y(), r, end.x(), end.y()));
     const double way = 5.0 + r * std::abs(turn) + 7.0;
     EXPECT_NEAR(sums_of(program).time_s, way, 1e-6 * way);
     EXPECT_NEAR(sums_of(program).way_mm, way, 1e-3 * way);

@@ -35,7 +35,8 @@ void GcodeReader::check_may_tilt(const Line& line) const {
     reject("G", code, "", fmt::format("comes while {} (line {}) is on", tilted_->code, tilted_->line),
            "Write G69 before it");
   }
-  if (incremental_) reject("G", code, "", "is not read with steps (G91): controls count its words both ways", "Write G90");
+  if (incremental_)
+    reject("G", code, "", "is not read with steps (G91): controls count its words both ways", "Write G90");
   if (line.p || line.q || line.l) {
     reject("G", code, "", "is read without P, Q and L: they give its angles another meaning",
            "Let the CAM system write Euler angles: G68.2 X Y Z I J K");
@@ -135,7 +136,8 @@ void GcodeReader::lose_machine_axis(std::size_t axis) {
 void GcodeReader::turn_to_plane(const Line& line) {
   special_ = true;
   if (!tilted_ || !tilted_->plane) {
-    reject("G", line.special_code->number, "", "turns the tool to a tilted plane, and none is on", "Write G68.2 before it");
+    reject("G", line.special_code->number, "", "turns the tool to a tilted plane, and none is on",
+           "Write G68.2 before it");
   }
   if (line.moves()) reject("G", line.special_code->number, "", "is read on a line without other words");
   const Vector3d axis = tilted_->axes.col(2);

@@ -89,10 +89,13 @@ TEST(GcodePlanes, ArcsTurnWithThem) {
 
 TEST(GcodePlanes, G53_1TurnsTheToolToTheNormal) {
   const std::string text =
-      "G54 G0 X0 Y0 Z100\nG68.2 X10 Y20 Z30 I90 J45 K0\nG53.1\nG0 X0 Y0\nG43 H1 Z50\nG1 Z-2 F120\nX8\nG0 Z50\nG69\nM30\n";
+      "G54 G0 X0 Y0 Z100\nG68.2 X10 Y20 Z30 I90 J45 K0\nG53.1\nG0 X0 Y0\nG43 H1 Z50\nG1 Z-2 F120\nX8\nG0 "
+      "Z50\nG69\nM30\n";
   const Program program = read(text);
   const Vector3d normal = euler(90, 45, 0, {0, 0, 1});
-  const auto at = [&](double x, double y, double z) -> Vector3d { return Vector3d(10, 20, 30) + euler(90, 45, 0, {x, y, z}); };
+  const auto at = [&](double x, double y, double z) -> Vector3d {
+    return Vector3d(10, 20, 30) + euler(90, 45, 0, {x, y, z});
+  };
   ASSERT_GE(program.blocks.size(), 4U);
   EXPECT_EQ(program.start.axis, Vector3d::UnitZ());
   for (const Block& block : program.blocks) {
@@ -130,7 +133,8 @@ TEST(GcodePlanes, RotaryWordsGoOnFromThePlane) {
 TEST(GcodePlanes, WhereTheToolStandsAfterG53_1IsNotKnown) {
   expect_rejected("G0 X0 Y0 Z9\nG68.2 X0 Y0 Z0 I0 J30 K0\nG53.1\nG1 X1 Y0 Z0 F60\n",
                   "is not known where this line cuts: G53.1 in line 3 left the positions of the program");
-  expect_rejected("G0 X0 Y0 Z9\nG68.2 X0 Y0 Z0 I0 J30 K0\nG53.1\nG0 X0 Y0\nG1 Z0 F60\n", "is not known where this line");
+  expect_rejected("G0 X0 Y0 Z9\nG68.2 X0 Y0 Z0 I0 J30 K0\nG53.1\nG0 X0 Y0\nG1 Z0 F60\n",
+                  "is not known where this line");
   // Without it the tool stays, and its position is known in the plane as well.
   const Program program = read("G0 X0 Y0 Z10\nG68.2 X0 Y0 Z0 I0 J90 K0\nG1 X5 F60\n");
   expect_at(program.blocks[0].end, {5, 0, 10});
@@ -142,7 +146,8 @@ TEST(GcodePlanes, AfterARetractAllThreePositionsComeAgain) {
   expect_at(read(retract + "Z5\nG1 Z0\n").blocks.back().end, euler(0, 30, 0, {2, 3, 0}));
   expect_rejected(retract + "G1 Z0\n", "is not known where this line cuts");
   // About Z, X and Y stay known where Z is not.
-  expect_at(read("G0 X0 Y0 Z9\nG1 X1 F60\nG91 G28 Z0\nG90\nG68 X0 Y0 R90\nG0 Z5\nG1 Z0\n").blocks.back().end, {1, 0, 0});
+  expect_at(read("G0 X0 Y0 Z9\nG1 X1 F60\nG91 G28 Z0\nG90\nG68 X0 Y0 R90\nG0 Z5\nG1 Z0\n").blocks.back().end,
+            {1, 0, 0});
 }
 
 TEST(GcodePlanes, WhatIsNotReadIsRejected) {
@@ -183,7 +188,8 @@ TEST(GcodePlanes, CyclesAndCornersInATurnedPlane) {
 
 TEST(GcodePlanes, SpeedsAndFeedsAreRewritten) {
   const std::string text =
-      "S1000 M3\nG0 X0 Y0 Z100\nG68.2 X10 Y20 Z30 I90 J45 K0\nG53.1\nG0 X0 Y0\nZ50\nG1 Z-2 F120\nG2 X8 I4\nG0 Z50\nG69\n"
+      "S1000 M3\nG0 X0 Y0 Z100\nG68.2 X10 Y20 Z30 I90 J45 K0\nG53.1\nG0 X0 Y0\nZ50\nG1 Z-2 F120\nG2 X8 I4\nG0 "
+      "Z50\nG69\n"
       "M30\n";
   const Program program = read_program_text(text, "part.nc");
   Program wanted = program;
@@ -203,12 +209,13 @@ TEST(GcodePlanes, AnyEulerAnglesInAnyFrame) {
   for (int seed = 0; seed < test::seeds(300); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const auto some = [&](double most) { return std::round(random.uniform(-most, most) * 1000.0) / 1000.0; };
-    const std::array<double, 9> n = {some(50), some(50), some(50), some(180), some(89), some(180), some(9), some(9), some(9)};
+    const std::array<double, 9> n = {some(50),  some(50), some(50), some(180), some(89),
+                                     some(180), some(9),  some(9),  some(9)};
     const Vector3d shift(some(20), some(20), some(20));
-    const Program program = read(fmt::format("G52 X{} Y{} Z{}\nG0 X0 Y0 Z0\nG68.2 X{} Y{} Z{} I{} J{} K{}\nG53.1\n"
-                                             "G0 X0 Y0 Z60\nG1 X{} Y{} Z{} F600\n",
-                                             shift.x(), shift.y(), shift.z(), n[0], n[1], n[2], n[3], n[4], n[5], n[6],
-                                             n[7], n[8]));
+    const Program program =
+        read(fmt::format("G52 X{} Y{} Z{}\nG0 X0 Y0 Z0\nG68.2 X{} Y{} Z{} I{} J{} K{}\nG53.1\n"
+                         "G0 X0 Y0 Z60\nG1 X{} Y{} Z{} F600\n",
+                         shift.x(), shift.y(), shift.z(), n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]));
     const Vector3d end = shift + Vector3d(n[0], n[1], n[2]) + euler(n[3], n[4], n[5], {n[6], n[7], n[8]});
     expect_at(program.blocks.back().end, end);
     EXPECT_LT((program.blocks.back().end.axis - euler(n[3], n[4], n[5], {0, 0, 1})).norm(), 1e-12);
