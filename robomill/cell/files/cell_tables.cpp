@@ -240,7 +240,7 @@ const Schema<robot::Placement>& workpiece_table() {
 
 const Schema<Cell>& program_words_table() {
   static const Schema<Cell> table(
-      "program", "meaning of the words A, B and C",
+      "program", "how NC programs are read",
       {key("machine", &Cell::machine, "the machine that A, B, C words are of")
            .words({"xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head"})
            .read_by(read_machine),
@@ -248,7 +248,12 @@ const Schema<Cell>& program_words_table() {
                       "motion of the axis where A, B, C turn: each evenly to its programmed value (default), or along "
                       "the shortest arc between the ends of a straight move")
            .words({"machine", "great-circle"})
-           .read_by(read_rotary)});
+           .read_by(read_rotary),
+       key("tool", &Cell::program_tool,
+           "the tool whose part of a program is read: the number that T, LOADTL or LOAD/TOOL gives it (tool.number is "
+           "the "
+           "robot controller's and chooses none); without it a program may cut with one tool alone")
+           .at_least(0.0)});
   return table;
 }
 

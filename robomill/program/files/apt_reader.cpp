@@ -39,6 +39,9 @@ constexpr std::array<Moving, 35> moving = {
      {"ORIGIN", as_frame}, {"COPY", as_frame},   {"REFSYS", as_frame}, {"CALL", as_moves},
      {"JUMPTO", as_moves}, {"LOOPST", as_moves}, {"INDEX", as_moves}}};
 
+/// … and those that choose which statements come next.
+constexpr std::array<std::string_view, 4> order_of_statements = {"CALL", "JUMPTO", "LOOPST", "INDEX"};
+
 /// What a feed counts.
 struct FeedUnit {
   std::string_view word;
@@ -114,9 +117,11 @@ AptReader::Modes AptReader::modes() const {
                .feed = feed_.value,
                .feed_in_inches = feed_.inches,
                .feed_per_revolution = feed_.per_revolution,
+               .speed_rad_per_s = spindle_speed_rad_per_s_,
                .plain_axis = plain_axis_,
                .moved_frame = frame_.has_value(),
-               .made = made_};
+               .made = made_,
+               .passes = passes()};
   if (cycle_.on) out.cycle_feed = cycle_.feed;
   return out;
 }
@@ -190,6 +195,8 @@ const std::vector<AptReader::Statement>& AptReader::statements() {
 void AptReader::read(std::string_view statement) {
   split(statement);
   if (text_.empty()) return;
+  const bool mounts = word_ == "LOADTL" || word_ == "LOAD" || word_ == "TURRET" || word_ == "TOOLPATH";
+  if (second_tool_line_ > 0 && !mounts && word_ != "FINI") return;
   made_ = Made::straight;
   if (word_ == "GOTO") {
     take_goto();
@@ -197,6 +204,7 @@ void AptReader::read(std::string_view statement) {
   }
   shown_ = printable(io::trimmed(statement), shown_letters);
   if (!keeps_circle(word_)) last_circle_.reset();
+  if (passes() && pass_over()) return;
   for (const Statement& known : statements()) {
     if (word_ == known.word) {
       (this->*known.take)();
@@ -220,6 +228,21 @@ void AptReader::read(std::string_view statement) {
     rest.remove_prefix(comma + 1);
   }
   skip_statement();
+}
+
+bool AptReader::pass_over() {
+  if (word_ == "CUTCOM") return true;
+  if (word_ == "CYCLE") {
+    const bool off = fields_.size() == 1 && fields_[0] == "OFF";
+    passed_switch_ = off ? std::string() : shown_;
+    return true;
+  }
+  const std::string_view first = word_.substr(0, word_.find(','));
+  if (std::ranges::find(order_of_statements, first) != order_of_statements.end()) return false;
+  const auto* const found = std::ranges::find(moving, first, &Moving::word);
+  if (found == moving.end() || found->hint != as_moves) return false;
+  tools_.move(line_);
+  return true;
 }
 
 void AptReader::reject_motion() const {
@@ -314,7 +337,7 @@ Pose AptReader::pose_of_numbers() {
     const Eigen::Vector3d axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
     pose.axis = frame_ ? (frame_->rotation * axis).normalized() : axis;
     if (!plain_axis_stays_) plain_axis_.reset();
-  } else if (setup_turned_) {
+  } else if (setup_turned_ && !passes()) {
     reject(std::string(word_), std::nullopt, "", "gives no tool axis where CSYS turns it",
            "Give the axis with each GOTO/: x, y, z, i, j, k");
   }
@@ -328,10 +351,10 @@ void AptReader::take_goto() {
 
 void AptReader::take_godlta() {
   take_numbers(1, 3);
-  if (!start_) {
+  if (!start_ && !passes()) {
     reject("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
   }
-  if (cycle_.on && !rapid_) {
+  if (cycle_.on && !rapid_ && !passes()) {
     reject("GODLTA", std::nullopt, "", "is a step to a hole of a drilling cycle", "Give holes by GOTO/");
   }
   Pose end = pose_;
@@ -348,7 +371,7 @@ void AptReader::take_godlta() {
 void AptReader::take_from() {
   take_numbers(3, 6);
   const Pose at = pose_of_numbers();
-  if (!start_) {
+  if (!start_ || passes()) {
     begin_at(at);
     highest_m_ = at.tip_m.z();
   } else if (moves_to(at)) {
@@ -369,15 +392,27 @@ void AptReader::reject_start(const char* what) const {
 }
 
 void AptReader::assume_once(Once what, Assumption assumption) {
-  if (!std::exchange(assumed_[static_cast<std::size_t>(what)], true)) remarks_.assume(std::move(assumption));
+  if (!passes() && !std::exchange(assumed_[static_cast<std::size_t>(what)], true)) remarks_.assume(std::move(assumption));
 }
 
-void AptReader::check_tool() const {
-  if (!cutting_ || tool_ == cutting_tool_) return;
-  reject(tool_word_, std::nullopt, "",
-         fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
-                     tool_line_),
-         "Write a program for each tool");
+bool AptReader::is_second_tool() {
+  if (!cutting_ || tool_ == cutting_tool_) return false;
+  second_tool_line_ = tool_line_;
+  second_tool_word_ = tool_word_;
+  second_move_line_ = line_;
+  return true;
+}
+
+void AptReader::at_end() {
+  if (second_tool_line_ == 0) return;
+  throw SeveralTools(
+      {.where = fmt::format("{}:{}", file_, second_tool_line_),
+       .field = second_tool_word_,
+       .rule = fmt::format("mounts another tool than the one that has cut, whose length is not known here, and line "
+                           "{} moves it",
+                           second_move_line_),
+       .hint = "Write a program for each tool"},
+      tools_.parts(), tools_.count());
 }
 
 void AptReader::begin_cutting() {
@@ -386,6 +421,16 @@ void AptReader::begin_cutting() {
 
 void AptReader::go(const Pose& end) {
   const bool rapid = std::exchange(rapid_, false);
+  begin_part_move();
+  if (passes()) {
+    circle_.reset();
+    last_circle_.reset();
+    begin_at(end);
+    return;
+  }
+  if (!passed_switch_.empty()) {
+    reject_text(tool_word_, passed_switch_, "of another tool is still on where this one moves", "Is its OFF missing?");
+  }
   if (cycle_cut_line_ > 0 && moved_since_cut_line_ == 0) moved_since_cut_line_ = line_;
   if (circle_) {
     go_round(*std::exchange(circle_, std::nullopt), end, rapid);
@@ -416,7 +461,7 @@ void AptReader::go_straight(const Pose& end, bool rapid) {
     turn_over(end);
     return;
   }
-  check_tool();
+  if (is_second_tool()) return;
   const double turn_rad = turn_to(end.axis);
   if (rapid) {
     lift_m_.reset();

@@ -34,10 +34,12 @@ class AptReader final : public ProgramReader {
     bool inches = false;
     double feed = 0.0;  ///< a minute or a revolution; 0: none yet
     bool feed_in_inches = false, feed_per_revolution = false;
+    double speed_rad_per_s = 0.0;
     std::optional<FeedRate> cycle_feed = {};         ///< of a drilling cycle that is on
     std::optional<Eigen::Vector3d> plain_axis = {};  ///< of positions without an axis; none: as it stands
     bool moved_frame = false;                        ///< positions do not count in W
     Made made = Made::straight;                      ///< by the last statement
+    bool passes = false;  ///< the last statement is in a part of a tool that is not chosen
   };
   [[nodiscard]] Modes modes() const;
 
@@ -53,6 +55,9 @@ class AptReader final : public ProgramReader {
 
   void read(std::string_view statement) override;
   bool advance() override;
+  /// Whether a statement moves a tool that is not chosen, and so counts for nothing.
+  bool pass_over();
+  void at_end() override;
 
   void split(std::string_view statement);
   [[nodiscard]] double number_of(std::string_view field) const;
@@ -67,9 +72,9 @@ class AptReader final : public ProgramReader {
   void go(const Pose& end);
   void go_straight(const Pose& end, bool rapid);
   [[nodiscard]] double feed_duration_s(const FeedRate& feed, double length_m, double turn_rad) const;
-  /// @throws InvalidInput where another tool than the one that has cut is mounted
-  void check_tool() const;
-  void mount(std::string tool);
+  /// Another tool than the one that has cut moves: from here on tools alone are looked at.
+  bool is_second_tool();
+  void mount();
   void begin_cutting();
   /// What a program takes for granted, each named with the line where it comes first.
   enum class Once : std::uint8_t {
@@ -211,6 +216,9 @@ class AptReader final : public ProgramReader {
   std::string tool_, cutting_tool_;   ///< both; the one of the moves at feed
   std::string tool_word_ = "LOADTL";  ///< of the statement that mounted it
   std::size_t tool_line_ = 0;
+  std::string second_tool_word_;
+  std::string passed_switch_;  ///< of tools that are not chosen: a cycle that is on
+  std::size_t second_tool_line_ = 0, second_move_line_ = 0;
   bool cutting_ = false;  ///< a move at feed has come
   Made made_ = Made::straight;
   std::array<bool, static_cast<std::size_t>(Once::last)> assumed_ = {};

@@ -81,8 +81,10 @@ TEST(Apt, RejectsAnotherToolOnceOneHasCut) {
   EXPECT_EQ(read("LOADTL/1\nGOTO/0,0,0\nLOADTL/2\nFEDRAT/60\nGOTO/1,0,0\nLOADTL/2\nGOTO/2,0,0\nLOADTL/3\nFINI\n")
                 .blocks.size(),
             2U);
-  expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2,LENGTH,80\nRAPID\nGOTO/2,0,0\n",
-                  "part.apt:7: LOADTL: in line 5 mounts another tool");
+  expect_rejected(
+      "LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2,LENGTH,80\nRAPID\nGOTO/2,0,0\n",
+      "part.apt:5: LOADTL: mounts another tool than the one that has cut, whose length is not known here, and "
+      "line 7 moves it");
 }
 
 TEST(Apt, FromIsTheStart) {

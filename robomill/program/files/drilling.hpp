@@ -12,12 +12,22 @@ namespace robomill::program {
 
 /// A move of a statement that makes several.
 struct MoveStep {
+  /// What holds during a move that comes later.
+  struct Running {
+    double speed_rad_per_s = 0.0;
+    Spindle spindle = Spindle::not_given;
+    Coolant coolant = {};
+  };
+
   Block::Kind kind = Block::Kind::rapid;
   Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();
   double duration_s = 0.0;
   std::optional<Eigen::Vector3d> axis = {};  ///< none: as it stands
   std::optional<Spindle> spindle = {};       ///< from here on
   OperatorStop stop = OperatorStop::none;
+  std::size_t line = 0;  ///< that says it; 0: the one that was taken
+  double tip_deviation_m = 0.0;
+  std::optional<Running> running = {};  ///< none: what holds now
 };
 
 /// How a cycle drills its holes.

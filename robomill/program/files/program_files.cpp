@@ -13,6 +13,7 @@
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
 #include "robomill/program/files/gcode/calls.hpp"
@@ -59,17 +60,23 @@ void require_known_dialect(const std::filesystem::path& path, std::string_view h
 class Walk {
  public:
   Walk(const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
-      : Walk([path] { return ProgramLines(path); }, path, reading, kept) {}
+      : Walk([path] { return ProgramLines(path); }, path, reading, kept, std::filesystem::is_regular_file(path)) {}
   /// @param lines  opens the program's lines anew
+  /// @param again  more than once
   Walk(const std::function<ProgramLines()>& lines, const std::filesystem::path& path, const ProgramReading& reading,
-       std::size_t kept)
-      : lines_((reading.validate(), lines())),
+       std::size_t kept, bool again)
+      : open_(lines),
+        lines_((reading.validate(), lines())),
+        path_(path),
         file_(path.string()),
+        again_(again),
         reading_(reading),
         format_(reading.format.value_or(program_format_of(path))),
         remarks_(kept),
         calls_(file_, lines) {
     if (format_ == ProgramFormat::gcode) require_known_dialect(path, lines_.head());
+    by_t_ =
+        format_ == ProgramFormat::gcode && reading_.tool && again_ && GcodeReader::changes_tool_by_t(lines(), file_);
     begin();
     if (!reader_->start()) {
       throw InvalidInput(file_, "holds no complete position",
@@ -107,6 +114,7 @@ class Walk {
     reader_ = make_reader(format_, file_, reading_, remarks_);
     gcode_ = format_ == ProgramFormat::gcode ? static_cast<GcodeReader*>(reader_.get()) : nullptr;
     if (gcode_ != nullptr) gcode_->allow_calls();
+    if (by_t_) gcode_->set_changes_tool_by_t();
     while (!reader_->start() && take_line()) {
     }
   }
@@ -126,10 +134,75 @@ class Walk {
       reader_->take(line, lines_.ahead());
       if (gcode_ != nullptr) follow_calls();
     } else {
-      reader_->finish();
+      finish();
       finished_ = true;
     }
     return true;
+  }
+
+  void finish() {
+    try {
+      reader_->finish();
+    } catch (const SeveralTools& error) {
+      throw InvalidInput(with_contents(error));
+    }
+  }
+
+  /// What a choice of the tool would read: "3 moves, 4.8 s at feed".
+  [[nodiscard]] std::string contents_of(int tool) const {
+    ProgramReading reading = reading_;
+    reading.tool = tool;
+    std::size_t moves = 0;
+    std::size_t line = 0;
+    double time_s = 0.0;
+    try {
+      Walk walk(open_, path_, reading, 0, true);
+      Block block;
+      while (walk.next(block)) {
+        moves += block.kind != Block::Kind::dwell && block.line != line ? 1 : 0;
+        line = block.line;
+        time_s += block.duration_s;
+      }
+    } catch (const InvalidInput& error) {
+      const std::string& where = error.parts().where;
+      const std::string at = where.size() > file_.size() + 1 ? "line " + where.substr(file_.size() + 1) + ": " : "";
+      return fmt::format("cannot be read alone: {}{} {}", at, error.parts().field, error.parts().rule);
+    }
+    constexpr double long_s = 120.0;
+    const std::string time =
+        time_s < long_s ? fmt::format("{:.3g} s", time_s) : fmt::format("{:.3g} min", time_s / units::minute);
+    return fmt::format("{} move{}, {} at feed", moves, moves == 1 ? "" : "s", time);
+  }
+
+  /// The error with each tool's lines, moves and time in the place of the parts.
+  [[nodiscard]] InvalidInput::Parts with_contents(const SeveralTools& error) const {
+    constexpr std::size_t most_named = 12;
+    std::vector<ToolPart> tools;
+    for (const ToolPart& part : error.tools()) {
+      const auto same = [&](const ToolPart& tool) { return tool.number == part.number && tool.name == part.name; };
+      const auto found = std::ranges::find_if(tools, same);
+      if (found == tools.end()) {
+        tools.push_back(part);
+      } else {
+        found->lines += part.lines;
+      }
+    }
+    std::vector<std::string> listed;
+    std::optional<int> first;
+    bool first_reads = false;
+    for (const ToolPart& tool : tools) {
+      if (listed.size() == most_named) break;
+      const std::string contents = tool.number && again_ ? ", " + contents_of(*tool.number) : "";
+      const bool reads = !contents.starts_with(", cannot");
+      if (tool.number && (!first || (reads && !first_reads))) first = tool.number;
+      first_reads = first_reads || (tool.number && reads);
+      listed.push_back(fmt::format("{} (line {}, {} line{}{})", tool.name, tool.line, tool.lines,
+                                   tool.lines == 1 ? "" : "s", contents));
+    }
+    InvalidInput::Parts parts = error.bare();
+    parts.rule += "; the program has " + list_text(listed, tools.size() - listed.size());
+    if (first) parts.hint = fmt::format("program.tool = {} in the cell reads that tool's part alone", *first);
+    return parts;
   }
 
   void follow_calls() {
@@ -143,8 +216,11 @@ class Walk {
     if (calls_.depth() == 0) reader_->go_on_at(lines_.number() + 1);
   }
 
+  std::function<ProgramLines()> open_;
   ProgramLines lines_;
+  std::filesystem::path path_;
   std::string file_;
+  bool again_ = false, by_t_ = false;
   ProgramReading reading_;
   ProgramFormat format_;
   ProgramRemarks remarks_;
@@ -255,7 +331,7 @@ Program read_program(const std::filesystem::path& path, const ProgramReading& re
 
 Program read_program_text(const std::string& text, const std::filesystem::path& name, const ProgramReading& reading) {
   const std::function<ProgramLines()> lines = [&] { return ProgramLines(name.string(), text); };
-  Walk walk(lines, name, reading, std::numeric_limits<std::size_t>::max());
+  Walk walk(lines, name, reading, std::numeric_limits<std::size_t>::max(), true);
   return whole(walk);
 }
 

@@ -48,6 +48,9 @@ struct ROBOMILL_API ProgramReading {
   /// same time.
   double axis_tolerance_rad = 1.7453292519943296e-5;
   std::optional<ProgramFormat> format = {};  ///< none: by the file's ending
+  /// Only what this tool (T4, LOADTL/4) moves is read, modes follow through the parts of the others; none: a program
+  /// that cuts with several tools is rejected.
+  std::optional<int> tool = {};
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -78,6 +81,10 @@ struct ROBOMILL_API ProgramReading {
 /// machine does not have, arcs whose radius does not fit, codes that would move the tool or its frame in ways that are
 /// not read (splines, compensation, macros, tilted planes), M codes not known to be harmless, and moves at feed after
 /// another tool, another length, another work frame or the end of the tool centre point.
+///
+/// Several tools: of the tool that the reading chooses, the first complete position after its change makes the start.
+/// Parts of other tools stand in `skipped` with their first lines. A chosen tool that the program does not have, or
+/// that moves again after another one has moved, is rejected.
 ///
 /// APT/CL (.apt .cls .cl .ncl .aptsource): GOTO, GODLTA, FROM; RAPID holds for one move; FEDRAT a minute or a
 /// revolution; UNITS (mm unless said), SPINDL, DELAY in seconds. Arcs (CIRCLE, MOVARC, TLON,GOFWD) become chords, CYCLE

@@ -149,14 +149,14 @@ std::string printable(std::string_view text, std::size_t most) {
 }
 
 ProgramReader::ProgramReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks)
-    : file_(std::move(file)), reading_(reading), remarks_(remarks) {}
+    : file_(std::move(file)), reading_(reading), remarks_(remarks), tools_(reading.tool) {}
 
 void ProgramReader::take(std::string_view line, char ahead) {
   ++count_;
   const Part part = part_of(line, ahead, continued_);
   if (!continued_) line_ = count_;
   if (!part.continues && !continued_) {
-    read(part.text);
+    read_counted(part.text);
     return;
   }
   joined_.append(part.text).push_back(' ');
@@ -170,16 +170,71 @@ void ProgramReader::take(std::string_view line, char ahead) {
 void ProgramReader::finish() {
   read_joined();
   at_end();
+  note_passed(tools_.now().lines);
+  check_chosen();
+}
+
+void ProgramReader::read_counted(std::string_view statement) {
+  if (statement.find_first_not_of(" \t\r") != std::string_view::npos) tools_.count_statement();
+  read(statement);
+}
+
+void ProgramReader::mount_tool(std::optional<int> number, std::string name) {
+  if (tools_.is_mounted(number, name)) return;
+  note_passed(tools_.now().lines - std::min<std::size_t>(tools_.now().lines, 1));
+  tools_.mount(number, std::move(name), line_);
+}
+
+void ProgramReader::begin_part_move() {
+  tools_.move(line_);
+  const ToolPart* const other = tools_.between();
+  if (other == nullptr) return;
+  reject(tools_.now().name, std::nullopt, "",
+         fmt::format("moves again in this line after {} (line {}) has moved: what that one cuts would be missing "
+                     "between the two parts",
+                     other->name, other->line),
+         "Write a file for each part");
+}
+
+void ProgramReader::note_passed(std::size_t lines) const {
+  const ToolPart& part = tools_.now();
+  if (!passes() || !part.moves) return;
+  remarks_.skip(part.line, fmt::format("the part of {}, {} line{}", part.name, lines, lines == 1 ? "" : "s"));
+}
+
+void ProgramReader::check_chosen() const {
+  if (!reading_.tool || start_) return;
+  constexpr std::size_t most_named = 12;
+  std::vector<std::string> listed;
+  std::vector<int> named;
+  bool mounted = false;
+  for (const ToolPart& part : tools_.parts()) {
+    mounted = mounted || part.number == reading_.tool;
+    if (!part.number || std::ranges::find(named, *part.number) != named.end()) continue;
+    named.push_back(*part.number);
+    if (listed.size() < most_named) listed.push_back(fmt::format("{} (line {})", part.name, part.line));
+  }
+  InvalidInput::Parts parts = {.where = file_, .field = "program.tool", .number = *reading_.tool};
+  if (mounted) {
+    parts.rule = "comes to no complete position: X, Y and Z after its change";
+  } else if (listed.empty()) {
+    parts.rule = "is no tool of this program, which names none";
+    parts.hint = "Take the key out to read the whole program";
+  } else {
+    parts.rule = "is no tool of this program: it has " + list_text(listed, named.size() - listed.size());
+  }
+  throw InvalidInput(std::move(parts));
 }
 
 void ProgramReader::read_joined() {
   continued_ = false;
   if (joined_.empty()) return;
-  read(joined_);
+  read_counted(joined_);
   joined_.clear();
 }
 
 bool ProgramReader::pop(Block& out) {
+  while (ready_ && passes()) ready_ = advance();
   if (!ready_) return false;
   out = block_;
   ready_ = advance();
@@ -239,7 +294,7 @@ double ProgramReader::turn_to(const Eigen::Vector3d& axis) const {
 
 void ProgramReader::begin_at(const Pose& pose) {
   pose_ = pose;
-  start_ = pose;
+  if (!passes()) start_ = pose;
 }
 
 bool ProgramReader::moves_to(const Pose& end) const {
@@ -263,7 +318,7 @@ void ProgramReader::move(Block::Kind kind, const Pose& end, double duration_s, D
 void ProgramReader::dwell(double duration_s, OperatorStop operator_stop) {
   move(Block::Kind::dwell, pose_, duration_s);
   block_.operator_stop = operator_stop;
-  if (operator_stop != OperatorStop::none) remarks_.operator_stop(line_);
+  if (operator_stop != OperatorStop::none && !passes()) remarks_.operator_stop(line_);
 }
 
 void ProgramReader::begin_steps() {
@@ -281,7 +336,13 @@ bool ProgramReader::take_step() {
       return true;
     }
     if (!moves_to(end)) continue;
-    move(step.kind, end, step.duration_s);
+    move(step.kind, end, step.duration_s, {.tip_m = step.tip_deviation_m, .axis_rad = 0.0});
+    if (step.line > 0) block_.line = step.line;
+    if (step.running) {
+      block_.spindle_speed_rad_per_s = step.running->speed_rad_per_s;
+      block_.spindle = step.running->spindle;
+      block_.coolant = step.running->coolant;
+    }
     return true;
   }
   return false;

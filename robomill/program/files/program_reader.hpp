@@ -9,6 +9,7 @@
 
 #include "robomill/program/files/drilling.hpp"
 #include "robomill/program/files/program_files.hpp"
+#include "robomill/program/files/tool_parts.hpp"
 #include "robomill/program/program.hpp"
 
 namespace robomill::program {
@@ -100,6 +101,8 @@ class ProgramReader {
   /// Where the tool stands after the lines taken.
   [[nodiscard]] const Pose& pose() const { return pose_; }
   [[nodiscard]] double spindle_speed_rad_per_s() const { return spindle_speed_rad_per_s_; }
+  /// The tools of the lines taken.
+  [[nodiscard]] const ToolParts& tools() const { return tools_; }
   /// The statement of the line taken last goes on in the next one.
   [[nodiscard]] bool continued() const { return continued_; }
 
@@ -138,6 +141,7 @@ class ProgramReader {
   [[nodiscard]] Eigen::Vector3d unit_axis(const char* names, const Eigen::Vector3d& written) const;
   /// Angle by which the axis turns on the way to `end` [rad]. @throws InvalidInput if that is half a circle
   [[nodiscard]] double turn_to(const Eigen::Vector3d& axis) const;
+  /// Of a part that is not read the pose alone is kept.
   void begin_at(const Pose& pose);
   [[nodiscard]] bool moves_to(const Pose& end) const;
   /// Of a straight move from the curve that it stands for.
@@ -152,11 +156,20 @@ class ProgramReader {
   void begin_steps();
   /// Makes the next block of `steps_`; false where they have no more.
   bool take_step();
-  void skip(std::string_view what) const { remarks_.skip(line_, what); }
+  void skip(std::string_view what) const {
+    if (!passes()) remarks_.skip(line_, what);
+  }
+  /// What moves is of a tool that is not chosen.
+  [[nodiscard]] bool passes() const { return tools_.passes(); }
+  /// From this statement on. @param name  "T4"
+  void mount_tool(std::optional<int> number, std::string name);
+  /// The tool that is mounted moves. @throws InvalidInput where another one has moved since the chosen one did
+  void begin_part_move();
 
   const std::string file_;
   const ProgramReading reading_;
   ProgramRemarks& remarks_;
+  ToolParts tools_;
   std::size_t line_ = 0;  ///< where the statement begins
   bool ended_ = false;
   Pose pose_;  ///< where the tool stands
@@ -170,6 +183,11 @@ class ProgramReader {
 
  private:
   void read_joined();
+  void read_counted(std::string_view statement);
+  /// @param lines  of the part that is over
+  void note_passed(std::size_t lines) const;
+  /// @throws InvalidInput where the chosen tool moves nothing
+  void check_chosen() const;
 
   std::size_t next_step_ = 0;
   std::size_t count_ = 0;  ///< of lines

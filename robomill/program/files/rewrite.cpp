@@ -63,6 +63,38 @@ void check_wanted(const std::string& file, const Program& as_read, const Program
   }
 }
 
+/// The parts of the tools that were not read are what they were.
+void verify_other_tools(const RewriteJob& job, const std::filesystem::path& name, const Rewriter::Result& result) {
+  for (const int tool : result.other_tools) {
+    ProgramReading reading = job.reading;
+    reading.tool = tool;
+    Program before;
+    try {
+      before = read_program_text(std::string(job.text), name, reading);
+    } catch (const InvalidInput&) {
+      continue;  // its lines are as they were
+    }
+    const auto fail = [&](std::size_t line, const std::string& why) {
+      throw InvalidInput(InvalidInput::Parts{
+          .where = fmt::format("{}:{}", job.file, line),
+          .rule = fmt::format("could not be rewritten: in the part of T{}, which must stay, {}", tool, why)});
+    };
+    Program after;
+    try {
+      after = read_program_text(result.rewritten.text, name, reading);
+    } catch (const InvalidInput& error) {
+      fail(1, error.parts().rule);
+    }
+    if (after.blocks.size() != before.blocks.size()) fail(1, "the moves are not as many");
+    if (std::string problem = pose_difference(before.start, after.start); !problem.empty()) fail(1, problem);
+    for (std::size_t i = 0; i < before.blocks.size(); ++i) {
+      const std::string problem =
+          block_difference(before.blocks[i], before.begin_of(i), after.blocks[i], after.begin_of(i));
+      if (!problem.empty()) fail(before.blocks[i].line, problem);
+    }
+  }
+}
+
 /// The new text as its reader reads it is what was wanted.
 void verify(const RewriteJob& job, const std::filesystem::path& name, const Rewriter::Result& result) {
   const auto fail = [&](std::size_t line, const std::string& why) {
@@ -128,6 +160,7 @@ Rewritten rewrite_program_text(const std::string& text, const std::filesystem::p
   }
   Rewriter::Result result = rewriter->rewrite(header);
   verify(job, name, result);
+  verify_other_tools(job, name, result);
   return std::move(result.rewritten);
 }
 

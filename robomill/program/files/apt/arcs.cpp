@@ -195,7 +195,7 @@ void AptReader::go_round(Circle circle, const Pose& end, bool rapid) {
     reject("CIRCLE", std::nullopt, "", fmt::format("comes while CYCLE/{} of line {} is on", cycle_.name, cycle_.line),
            "Is a CYCLE/OFF missing?");
   }
-  check_tool();
+  if (is_second_tool()) return;
   static_cast<void>(turn_to(end.axis));
   Arc arc = arc_about(circle.center_m, circle.normal, pose_.tip_m, end.tip_m);
   check_radii(circle, arc);

@@ -304,7 +304,7 @@ void AptReader::drill(const Pose& hole) {
   if (lost_line_ > 0) reject_start("a hole");
   const DrilledHole drilled = hole_of(hole);
   if (!start_) begin_at({.tip_m = hole.tip_m + drilled.return_m * hole.axis, .axis = hole.axis});
-  check_tool();
+  if (is_second_tool()) return;
   static_cast<void>(turn_to(hole.axis));
   begin_cutting();
   made_ = Made::moves;

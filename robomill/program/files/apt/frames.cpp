@@ -158,7 +158,8 @@ void AptReader::take_retract() {
   }
   const double way_m = (clearance_->offset_m - clearance_->normal.dot(pose_.tip_m)) / along;
   if (!(way_m > 0.0)) return;
-  check_tool();
+  begin_part_move();
+  if (is_second_tool()) return;
   const Pose end = {.tip_m = pose_.tip_m + way_m * pose_.axis, .axis = pose_.axis};
   highest_m_ = std::max(highest_m_, end.tip_m.z());
   move(Block::Kind::rapid, end, 0.0);
@@ -174,6 +175,7 @@ void AptReader::take_home() {
   take_numbers(3, 6);
   rapid_ = false;
   made_ = Made::moves;
+  begin_part_move();
   go_straight(pose_of_numbers(), true);
 }
 
@@ -184,7 +186,7 @@ void AptReader::lose() {
 }
 
 void AptReader::come_back(const Pose& end) {
-  check_tool();
+  if (is_second_tool()) return;
   lost_line_ = 0;
   made_ = Made::moves;
   static_cast<void>(turn_to(end.axis));
@@ -199,7 +201,7 @@ void AptReader::come_back(const Pose& end) {
 }
 
 void AptReader::turn_over(const Pose& end) {
-  check_tool();
+  if (is_second_tool()) return;
   made_ = Made::moves;
   assume_once(Once::turned_over,
               {.what = fmt::format("Turn of the tool by half a circle into another CSYS, in line {}", line_),

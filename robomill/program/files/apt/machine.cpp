@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/program/files/apt_reader.hpp"
 
 namespace robomill::program {
@@ -49,17 +50,22 @@ void AptReader::take_coolant() {
   }
 }
 
-// Whichever statement names the tool that comes next.
-void AptReader::mount(std::string tool) {
-  tool_ = std::move(tool);
+// A number that a statement loads is the tool's; a path's tool has a name alone.
+void AptReader::mount() {
+  tool_ = fmt::format("{}|{}", loaded_, path_tool_);
   tool_word_ = word_ == "TOOLPATH" ? "TOOL PATH" : std::string(word_);
   tool_line_ = line_;
+  const std::optional<double> number = io::parse_number(loaded_.starts_with('T') ? loaded_.substr(1) : loaded_);
+  const std::optional<int> whole = number ? whole_tool(*number) : std::nullopt;
+  std::string name = loaded_.empty() ? path_tool_ : loaded_;
+  if (whole) name = fmt::format("T{}", *whole);
+  mount_tool(whole, name.empty() ? std::string("one without a number") : std::move(name));
   skip_statement();
 }
 
 void AptReader::take_tool() {
   loaded_ = fields_.empty() ? std::string() : std::string(fields_[0]);
-  mount(fmt::format("{}|{}", loaded_, path_tool_));
+  mount();
 }
 
 void AptReader::take_load() {
@@ -68,7 +74,7 @@ void AptReader::take_load() {
     return;
   }
   loaded_ = fields_.size() > 1 ? std::string(fields_[1]) : std::string();
-  mount(fmt::format("{}|{}", loaded_, path_tool_));
+  mount();
 }
 
 // TOOL PATH/NAME,TOOL,ITS_TOOL
@@ -78,7 +84,7 @@ void AptReader::take_tool_path() {
     return;
   }
   path_tool_ = fields_[2];
-  mount(fmt::format("{}|{}", loaded_, path_tool_));
+  mount();
 }
 
 void AptReader::take_stop() {

@@ -135,6 +135,7 @@ Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) co
   }
   const Vector2d center_m = unit_m() * Vector2d(first.value_or(0.0), second.value_or(0.0));
   if (!centers_absolute_) return from + center_m;
+  if (tilted_) return center_m;
   const Vector3d origin = origin_m().value_or(Vector3d::Zero());
   return center_m + Vector2d(origin[plane_.first], origin[plane_.second]);
 }
@@ -163,8 +164,9 @@ Vector2d GcodeReader::center_of_radius(const Line& line, const Vector2d& from, c
   return from + 0.5 * way + (left ? off_m : -off_m) * across;
 }
 
-Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
-  const Vector3d& begin_m = pose_.tip_m;
+Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_in_w_m) const {
+  const Vector3d begin_m = in_program(pose_.tip_m);
+  const Vector3d end_m = in_program(end_in_w_m);
   const Vector2d from(begin_m[plane_.first], begin_m[plane_.second]);
   const Vector2d to(end_m[plane_.first], end_m[plane_.second]);
   const Vector2d center = line.radius ? center_of_radius(line, from, to) : center_of_words(line, from);
@@ -204,10 +206,10 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
     out[plane_.normal] = height;
     return out;
   };
-  arc.center_m = in_space(center, begin_m[plane_.normal]);
-  arc.towards = in_space(a / arc.begin_radius_m, 0.0);
-  arc.ahead = in_space(side / arc.begin_radius_m * Vector2d(-a.y(), a.x()), 0.0);
-  arc.rise_m = in_space(Vector2d::Zero(), end_m[plane_.normal] - begin_m[plane_.normal]);
+  arc.center_m = out_of_program(in_space(center, begin_m[plane_.normal]));
+  arc.towards = turned(in_space(a / arc.begin_radius_m, 0.0));
+  arc.ahead = turned(in_space(side / arc.begin_radius_m * Vector2d(-a.y(), a.x()), 0.0));
+  arc.rise_m = turned(in_space(Vector2d::Zero(), end_m[plane_.normal] - begin_m[plane_.normal]));
   return arc;
 }
 

@@ -12,16 +12,16 @@ struct Still {
   GcodeGroup group;
 };
 /// Look-ahead, smoothing, exact stop, and modes that are turned off: no position changes its meaning.
-constexpr std::array<Still, 35> still = {{
-    {50, GcodeGroup::other},    {51, GcodeGroup::other},   {80, GcodeGroup::other},   {90, GcodeGroup::other},
-    {131, GcodeGroup::other},   {150, GcodeGroup::other},  {220, GcodeGroup::other},  {230, GcodeGroup::other},
-    {250, GcodeGroup::other},   {281, GcodeGroup::other},  {301, GcodeGroup::other},  {400, GcodeGroup::radius},
-    {401, GcodeGroup::other},   {430, GcodeGroup::length}, {434, GcodeGroup::length}, {435, GcodeGroup::length},
-    {490, GcodeGroup::length},  {500, GcodeGroup::other},  {501, GcodeGroup::other},  {542, GcodeGroup::other},
-    {610, GcodeGroup::path},    {611, GcodeGroup::path},   {620, GcodeGroup::path},   {630, GcodeGroup::path},
-    {640, GcodeGroup::path},    {670, GcodeGroup::other},  {690, GcodeGroup::other},  {970, GcodeGroup::other},
-    {1000, GcodeGroup::other},  {1030, GcodeGroup::other}, {1130, GcodeGroup::other}, {1870, GcodeGroup::path},
-    {2340, GcodeGroup::length}, {2550, GcodeGroup::other}, {2690, GcodeGroup::other},
+constexpr std::array<Still, 34> still = {{
+    {50, GcodeGroup::other},   {51, GcodeGroup::other},   {80, GcodeGroup::other},   {90, GcodeGroup::other},
+    {131, GcodeGroup::other},  {150, GcodeGroup::other},  {220, GcodeGroup::other},  {230, GcodeGroup::other},
+    {250, GcodeGroup::other},  {281, GcodeGroup::other},  {301, GcodeGroup::other},  {400, GcodeGroup::radius},
+    {401, GcodeGroup::other},  {430, GcodeGroup::length}, {434, GcodeGroup::length}, {435, GcodeGroup::length},
+    {490, GcodeGroup::length}, {500, GcodeGroup::other},  {501, GcodeGroup::other},  {542, GcodeGroup::other},
+    {610, GcodeGroup::path},   {611, GcodeGroup::path},   {620, GcodeGroup::path},   {630, GcodeGroup::path},
+    {640, GcodeGroup::path},   {670, GcodeGroup::other},  {970, GcodeGroup::other},  {1000, GcodeGroup::other},
+    {1030, GcodeGroup::other}, {1130, GcodeGroup::other}, {1870, GcodeGroup::path},  {2340, GcodeGroup::length},
+    {2550, GcodeGroup::other}, {2690, GcodeGroup::other},
 }};
 
 /// LinuxCNC's reference of M codes, the mill manuals of Haas (Fanuc's where they agree), and Heidenhain's of its ISO
@@ -140,8 +140,6 @@ const GcodeGroup* still_gcode(int code) {
 
 const char* gcode_hint(int code) {
   switch (code) {
-    case 680:
-    case 682:
     case 510:
     case 511:
     case 1010:
@@ -149,9 +147,6 @@ const char* gcode_hint(int code) {
     case 70:
     case 71:
       return "It would change what the words of positions mean";
-    case 531:
-      return "It turns the rotary axes by a tilted frame that is not read. Let the CAM system write positions of the "
-             "tip";
     case 2540:
     case 544:
       return "It would move the program's frame by what the machine has measured. Let the CAM system write positions "

@@ -79,6 +79,8 @@ void GcodeReader::drill(const Line& line) {
   needs(plane_.normal == 2, "G17", "is read in the plane G17 alone");
   needs(feed_mode_ == FeedMode::per_minute, "G94", "needs a feed per minute (G94)");
   const bool turns = line.rotary[0] || line.rotary[1] || line.rotary[2];
+  needs(!tilted_ || tilted_->axes.col(2) == Vector3d::UnitZ(), "G69", "is not read in a tilted plane",
+        "Let the CAM system write cycles as straight moves");
   needs(!turns && pose_.axis == Vector3d::UnitZ(), "A, B, C", "is read with the tool along Z alone",
         "Let the CAM system write cycles as straight moves");
   needs(!line.vector[0] && !line.vector[1], "I, J", "is not read with I or J, which another control would drill by",

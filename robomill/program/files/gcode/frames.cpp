@@ -62,6 +62,15 @@ void GcodeReader::choose_system(const Line& line) {
   system_ = {.value = id, .line = line_, .code = std::move(said)};
 }
 
+void GcodeReader::note_other_base() const {
+  if (!passed_system_ || passed_system_->value == system_.value) return;
+  const auto name = [](const Said<int>& system) { return system.code.empty() ? std::string("G54") : system.code; };
+  remarks_.assume({.what = "The program's frame",
+                   .taken = fmt::format("{}, in which {} begins; the tools before it begin in {}", name(system_),
+                                        tools_.now().name, name(*passed_system_)),
+                   .key = "workpiece.origin_mm of that frame"});
+}
+
 std::optional<Vector3d> GcodeReader::origin_m() const {
   if (shift_lost_.value) return std::nullopt;
   const Vector3d offset_m = local_m_ + shift_m_;
@@ -158,7 +167,7 @@ void GcodeReader::set_table(const Line& line) {
 
 void GcodeReader::lose(std::size_t axis, const std::string& code) {
   if (start_ && !pending_) pending_ = pose_;
-  known_[axis] = false;
+  lose_machine_axis(axis);
   lost_ = {.value = true, .line = line_, .code = code};
 }
 
@@ -175,11 +184,19 @@ void GcodeReader::go_home(const Line& line) {
     if (!line.position[i]) continue;
     said += fmt::format(" {}{:g}", axis_names[i], *line.position[i]);
     const Eigen::Index axis = axis_of(i);
-    if (origin) point.tip_m[axis] = *line.position[i] * unit_m() + (incremental_ ? pose_.tip_m : *origin)[axis];
+    if (tilted_ && !(incremental_ && *line.position[i] == 0.0)) {
+      reject(axis_names[i], *line.position[i], unit_name(),
+             fmt::format("is a point on the way of {} while {} (line {}) is on, which is not read", code, tilted_->code,
+                         tilted_->line),
+             fmt::format("Write G91 {} Z0", code));
+    }
+    if (origin && !tilted_)
+      point.tip_m[axis] = *line.position[i] * unit_m() + (incremental_ ? pose_.tip_m : *origin)[axis];
     check_coordinate(axis_names[i], point.tip_m[axis], *line.position[i], unit_name());
   }
   skip(said);
-  if (start_ && !pending_ && !setup_change(line) && moves_to(point)) move(Block::Kind::rapid, point, 0.0);
+  const bool known = start_ && !pending_ && tools_.between() == nullptr;
+  if (known && !setup_change(line) && moves_to(point)) move(Block::Kind::rapid, point, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     if (line.position[i] || (!named && !turns)) lose(i, code);
     if (line.rotary[i] || (!named && !turns)) lost_rotary_[i] = true;
@@ -203,13 +220,14 @@ bool GcodeReader::is_elsewhere(const Line& line) {
   std::optional<Change> change = setup_change(line);
   const bool of_length = change && !center_point_lost(line);
   if (!change && !origin_m()) {
+    const Said<int> base = base_.value_or(system_);
     change =
         Change{.line = system_.line,
                .code = system_.code,
                .what = fmt::format("is another work frame than {} of the positions before{}; where the one lies in "
                                    "the other is not known here",
-                                   base_->code.empty() ? "that" : base_->code,
-                                   base_->line > 0 ? fmt::format(" (line {})", base_->line) : ""),
+                                   base.code.empty() ? "that" : base.code,
+                                   base.line > 0 ? fmt::format(" (line {})", base.line) : ""),
                .hint = "Write a program for each frame, or give both by G10 L2 P X Y Z before the first position"};
     if (shift_lost_.value) {
       change->line = shift_lost_.line;
@@ -230,9 +248,9 @@ bool GcodeReader::is_elsewhere(const Line& line) {
   // A machine may add the length of the tool, or another frame: only where that comes back positions are known again.
   for (std::size_t i = 0; i < 3; ++i) {
     const bool loses = of_length ? i == 2 : line.position[i].has_value();
-    if (loses) lose(i, change->code);
+    if (loses || tilted_) lose(i, change->code);
   }
-  if (of_length && pending_) {
+  if (of_length && pending_ && !tilted_) {
     for (std::size_t i = 0; i < 2; ++i) {
       const auto axis = axis_of(i);
       const std::optional<Vector3d> origin = origin_m();

@@ -140,7 +140,7 @@ TEST(Gcode, RejectsWithLineWordAndRule) {
   expect_rejected(head + "G1 X+-1 F1\n", "must be a letter and a number");
   expect_rejected(head + "G1 X F1\n", "must be a letter and a number");
   expect_rejected(head + "G1 X1e3 F1\n", "E = 3; is a word not known here");
-  expect_rejected(head + "G1 X1,R2 F1\n", "part.ngc:2: \",r2f1\": rounds or chamfers a corner, which is not read");
+  expect_rejected(head + "G1 X1,A45 F1\n", "part.ngc:2: \",a45f1\": is a word of drawings (angles, bends)");
   expect_rejected(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
   expect_rejected(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
   expect_rejected(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
@@ -151,7 +151,7 @@ TEST(Gcode, RejectsWithLineWordAndRule) {
   expect_rejected(head + "G58.5\n", "G = 58.5; is no G code");
   expect_rejected(head + "G43.1 Z5\n", "It would move the tip by the words that come with it");
   expect_rejected(head + "G41 D1\n", "path of the tool's tip");
-  expect_rejected(head + "G68 R30\n", "what the words of positions mean");
+  expect_rejected(head + "G68 R30\n", "needs its centre in the plane G17");
   expect_rejected(head + "G95\n", "Use G93 or G94");
   expect_rejected(head + "G1 X1 R2 F1\n", "part.ngc:2: R = 2 mm; stands on a line that is no arc");
   expect_rejected(head + "G92.3\n", "It would move the program's frame");

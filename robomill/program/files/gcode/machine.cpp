@@ -1,4 +1,4 @@
-// What a program in G-code says to its machine: M codes, tools, lengths, the tool centre point.
+// What a program in G-code says to its machine: M codes, lengths, the tool centre point, rotary axes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/program/files/gcode/reader.hpp"
 
 namespace robomill::program {
@@ -30,6 +32,10 @@ std::string meaning_of(const Mcode& code) {
     }
   }
   return out;
+}
+
+bool has_axis(Machine machine, std::size_t rotary) {
+  return rotary == 2 || static_cast<Eigen::Index>(rotary) == tilt_index(machine);
 }
 
 }  // namespace
@@ -111,8 +117,8 @@ void GcodeReader::set_up(const Line& line) {
     reject("G", 50.0, "", "stands on a line with positions: on a lathe it would set the frame by them");
   }
   constexpr double unknown = -1.0;
-  if (line.tool) prepared_tool_ = *line.tool;
-  if (line.tool_change) mount(prepared_tool_.value_or(unknown));
+  if (line.tool) name_tool(*line.tool);
+  if (line.tool_change) mount(prepared_tool_.value_or(unknown), "M6");
   if (line.length) set_length(*line.length, line);
   if (line.center_point) {
     const int code = static_cast<int>(line.center_point->number);
@@ -133,55 +139,22 @@ void GcodeReader::set_length(const GcodeWords::Word& word, const Line& line) {
   }
 }
 
-void GcodeReader::mount(double number) {
-  constexpr std::size_t most = 100;
-  tool_ = {.value = number, .line = line_, .code = "M6"};
-  ++mounted_count_;
-  if (mounted_.size() < most) mounted_.push_back({.number = number, .line = line_});
-}
-
-// What follows the first cut of a second tool is not carried out.
-void GcodeReader::list_tools(std::string_view statement) {
-  try {
-    words_.scan(statement, file_, line_);
-  } catch (const InvalidInput&) {
-    return;  // names no tool
-  }
-  bool changes = false;
-  for (const GcodeWords::Word& word : words_.words()) {
-    if (word.letter == 't') prepared_tool_ = word.number;
-    if (word.letter != 'm') continue;
-    changes = changes || word.number == 6.0 || word.number == 16.0;
-    ended_ = ended_ || word.number == 2.0 || word.number == 30.0;
-  }
-  if (changes) mount(prepared_tool_.value_or(-1.0));
-}
-
-void GcodeReader::at_end() {
-  if (!leaves_out_sub_.empty()) {
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, sub_line_),
-                                           .field = fmt::format("o{} sub", leaves_out_sub_),
-                                           .rule = "begins a subprogram that does not end",
-                                           .hint = "Is its endsub missing?"});
-  }
-  if (!second_tool_) return;
-  constexpr std::size_t most_named = 12;
-  std::string tools;
-  for (std::size_t i = 0; i < std::min(mounted_.size(), most_named); ++i) {
-    const Mounted& tool = mounted_[i];
-    tools +=
-        fmt::format("{}{} (line {})", i == 0 ? "" : ", ",
-                    tool.number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", tool.number), tool.line);
-  }
-  if (mounted_count_ > most_named) tools += fmt::format(" and {} more", mounted_count_ - most_named);
-  throw InvalidInput(InvalidInput::Parts{
-      .where = fmt::format("{}:{}", file_, second_tool_->line),
-      .field = second_tool_->code,
-      .rule = fmt::format("{}, and line {} cuts; the program mounts {}", second_tool_->what, second_tool_line_, tools),
-      .hint = second_tool_->hint});
-}
-
 void GcodeReader::begin_cutting() {
+  if (!m6_has_come_ && !named_cutting_.value) {
+    named_cutting_ = named_;
+  } else if (!m6_has_come_ && named_.value != named_cutting_.value && !second_named_) {
+    second_named_ = {.line = named_.line,
+                     .code = named_.code,
+                     .what = "names another tool than the one that has cut, in a program without M6",
+                     .hint = "Write a program for each tool, or M6 where the tool changes"};
+    second_named_line_ = line_;
+  }
+  if (reading_.tool && !cutting_ && length_.value && length_.line < tool_.line) {
+    remarks_.assume({.what = fmt::format("The tool's length in line {}", line_),
+                     .taken = fmt::format("that of {}, though {} in line {} comes before its change", tools_.now().name,
+                                          length_.code, length_.line),
+                     .key = "G43 H behind M6"});
+  }
   if (!cutting_) {
     cutting_ = true;
     cutting_tool_ = tool_.value;
@@ -195,12 +168,15 @@ void GcodeReader::begin_cutting() {
       reject(names[i], std::nullopt, "deg", "is not known where this line cuts: it went to the machine's own position",
              "Give the angle by G0 before it");
   }
-  if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero()) remarks_.no_center_point(line_);
+  const bool in_plane = tilted_ && tilted_->plane;
+  if (center_point_.value == CenterPoint::not_said && !rotary_deg_.isZero() && !in_plane)
+    remarks_.no_center_point(line_);
 }
 
 bool GcodeReader::center_point_lost(const Line& line) const {
   const bool turned = line.rotary[0] || line.rotary[1] || line.rotary[2] || !rotary_deg_.isZero();
-  return center_point_.value == CenterPoint::off && turned;
+  const bool in_plane = tilted_ && tilted_->plane;  // which positions count in, whichever axes have turned
+  return center_point_.value == CenterPoint::off && turned && !in_plane;
 }
 
 std::optional<GcodeReader::Change> GcodeReader::setup_change(const Line& line) const {
@@ -220,6 +196,45 @@ std::optional<GcodeReader::Change> GcodeReader::setup_change(const Line& line) c
                   "One length holds from the first move at feed on");
   }
   return std::nullopt;
+}
+
+void GcodeReader::turn_rotary(const Line& line) {
+  static constexpr std::array<const char*, 3> names = {"A", "B", "C"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!line.rotary[i]) continue;
+    if (!reading_.machine) {
+      reject(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
+             fmt::format("Give program.machine: \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\" or \"xyzbc-head\"{}",
+                         i == 2 ? ". A corner is cut off by ,C with its comma" : ""));
+    }
+    if (!has_axis(*reading_.machine, i)) {
+      reject(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
+             "Is it the other machine, with A in place of B or B in place of A?");
+    }
+    const auto axis = static_cast<Eigen::Index>(i);
+    if (incremental_ && lost_rotary_[i]) {
+      reject(names[i], *line.rotary[i], "deg", "is a step (G91) from an angle that is not known here", "Write G90");
+    }
+    lost_rotary_[i] = false;
+    rotary_deg_[axis] = *line.rotary[i] + (incremental_ ? rotary_deg_[axis] : 0.0);
+    if (!(std::abs(rotary_deg_[axis]) <= 1e6)) {
+      reject(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
+    }
+  }
+}
+
+RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
+  return {
+      .machine = *reading_.machine, .begin_rad = rotary_before_deg * units::deg, .end_rad = rotary_deg_ * units::deg};
+}
+
+void GcodeReader::check_shortest(const RotaryMove& turn) const {
+  constexpr double half_deg = 180.0;
+  const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
+  const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
+  if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
+  reject("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
+         "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 
 }  // namespace robomill::program

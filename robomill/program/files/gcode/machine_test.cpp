@@ -98,17 +98,17 @@ TEST(GcodeMachine, EveryGcodeIsReadOrRejectedWithItsLine) {
 }
 
 TEST(GcodeMachine, CodesThatChangeMotionAreNeverSkipped) {
-  for (const char* line : {"G43.1 Z5",     "G43.2 H2", "G44 H1",        "G55",      "G59.3",
-                           "G54.1 P3",     "G54.2 P1", "G68 X0 Y0 R30", "G68.2 X0", "G51 X2",
-                           "G10 L2 P1 X1", "G110",     "G92.3",         "G154 P2",  "G53 G0 X0",
-                           "G28",          "G30 Z0",   "G41 D1",        "G42",      "G5 X1 I1 J1 P1 Q1",
-                           "G5.1 Q1 I1",   "G5.2",     "G73 Z-1 R1",    "G76",      "G81 Z-1",
-                           "G82",          "G83",      "G84",           "G85",      "G86",
-                           "G87",          "G88",      "G89",           "G65 P1",   "G66 P1",
-                           "G16",          "G7",       "G95",           "G96 S100", "G50 X2",
-                           "O100 call",    "O100 sub", "#1=2",          "G1 X#1",   "G1 X[1+2]",
-                           "M98 P1",       "M97 P1",   "M198 P1",       "M6 T2",    "M72",
-                           "M91",          "M94",      "M126",          "M140"}) {
+  for (const char* line : {"G43.1 Z5",     "G43.2 H2", "G44 H1",     "G55",      "G59.3",
+                           "G54.1 P3",     "G54.2 P1", "G68 X0 R30", "G68.2 X0", "G51 X2",
+                           "G10 L2 P1 X1", "G110",     "G92.3",      "G154 P2",  "G53 G0 X0",
+                           "G28",          "G30 Z0",   "G41 D1",     "G42",      "G5 X1 I1 J1 P1 Q1",
+                           "G5.1 Q1 I1",   "G5.2",     "G73 Z-1 R1", "G76",      "G81 Z-1",
+                           "G82",          "G83",      "G84",        "G85",      "G86",
+                           "G87",          "G88",      "G89",        "G65 P1",   "G66 P1",
+                           "G16",          "G7",       "G95",        "G96 S100", "G50 X2",
+                           "O100 call",    "O100 sub", "#1=2",       "G1 X#1",   "G1 X[1+2]",
+                           "M98 P1",       "M97 P1",   "M198 P1",    "M6 T2",    "M72",
+                           "M91",          "M94",      "M126",       "M140"}) {
     EXPECT_FALSE(said_of(head + line + "\nG1 X2\n").empty()) << line;
   }
 }
@@ -181,7 +181,8 @@ TEST(GcodeMachine, AnotherToolIsRejectedOnceOneHasCut) {
   expect_rejected(
       "T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG0 Z5\nM6 T2\nM3\nG0 X5\nG1 Z0\nX6\nM6\n#1=3\nT3 M6\nX1\nM30\nT4 M6\n",
       "part:5: M6: mounts another tool than the one that has cut, whose length is not known here, and line 8 "
-      "cuts; the program mounts T1 (line 1), T2 (line 5), T2 (line 10), T3 (line 12). Write a program for each tool");
+      "cuts; the program has T1 (line 1, 4 lines), T2 (line 5, 7 lines) and T3 (line 12, 3 lines). Write a program "
+      "for each tool");
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nM6 T2\nG0 X5 Y3\nM30\n"), "") << "it does not cut";
   expect_rejected("T1 M6\nG0 X0 Y0 Z0\nG2 X2 I1 F60\nT2\nM16\nG3 X0 I-1\n", "part:5: M6: mounts another tool");
 }

@@ -87,6 +87,16 @@ bool GcodeReader::set_frame(int code, const GcodeWords::Word& word, Line& line) 
       return takes(Special::home);
     case 520:
       return takes(Special::local);
+    case 531:
+      return takes(Special::along_plane);
+    case 680:
+      return takes(Special::turned);
+    case 682:
+      return takes(Special::tilted);
+    case 690:
+      line.frame_off = true;
+      line.leave_out(word);
+      return true;
     case 530:
       return takes(Special::machine);
     case 920:

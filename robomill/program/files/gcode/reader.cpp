@@ -20,10 +20,6 @@ std::string letter_name(char letter) {
   return std::string(1, static_cast<char>(letter - 'a' + 'A'));
 }
 
-bool has_axis(Machine machine, std::size_t rotary) {
-  return rotary == 2 || static_cast<Eigen::Index>(rotary) == tilt_index(machine);
-}
-
 bool any(const std::array<std::optional<double>, 3>& words) {
   return words[0] || words[1] || words[2];
 }
@@ -54,6 +50,8 @@ GcodeReader::Modes GcodeReader::modes() const {
           .feed = feed_,
           .rotary_deg = rotary_deg_,
           .origin_m = origin_m().value_or(Eigen::Vector3d::Zero()),
+          .speed_rad_per_s = spindle_speed_rad_per_s_,
+          .passes = passes(),
           .special = special_};
 }
 
@@ -147,8 +145,21 @@ void GcodeReader::carry_out(Line& line) {
   check_line(line);
   if (line.cycle_off && (line.groups & static_cast<std::uint32_t>(GcodeGroup::motion)) == 0) motion_ = Motion::none;
   check_points(line);
+  if (line.corner || corner_) check_corner(line);
   set_up(line);
+  if (line.frame_off) end_tilt();
   if (line.system) choose_system(line);
+  check_frame_stays(line);
+  if (passes()) {
+    take_feed(line);
+    pass_over(line);
+  } else {
+    carry_out_part(line);
+  }
+  if (line.call) call_program(line);
+}
+
+void GcodeReader::carry_out_part(Line& line) {
   if (line.dwells) wait(line);
   leave_out_rest(line);
   if (!line.left_out.empty()) skip(line.left_out);
@@ -162,6 +173,15 @@ void GcodeReader::carry_out(Line& line) {
       break;
     case Special::local:
       set_local(line);
+      break;
+    case Special::turned:
+      turn_plane(line);
+      break;
+    case Special::tilted:
+      tilt(line);
+      break;
+    case Special::along_plane:
+      turn_to_plane(line);
       break;
     case Special::shift:
       shift(line);
@@ -185,12 +205,15 @@ void GcodeReader::carry_out(Line& line) {
     highest_m_ = highest_known_ ? std::max(highest_m_, begin_m) : begin_m;
     highest_known_ = true;
   }
-  if (line.call) call_program(line);
   if (start_) stop_after_ = line.stop;
   if (!ready_) ready_ = advance();
 }
 
 void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
+  if (word.letter == ',') {
+    take_corner(word, line);
+    return;
+  }
   if (line.has(word.letter) && word.letter != 'g' && word.letter != 'm') {
     reject(letter_name(word.letter), word.number, "", "comes twice on one line");
   }
@@ -298,12 +321,15 @@ void GcodeReader::wait(const Line& line) {
 
 Eigen::Vector3d GcodeReader::position_after(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
-  Eigen::Vector3d position = pending_ ? pending_->tip_m : pose_.tip_m;
+  const Eigen::Vector3d from_m = corner_ ? corner_->at_m : pending_ ? pending_->tip_m : pose_.tip_m;
   if (!base_ && any(line.position)) {
     base_ = system_;
     if (const auto table = tables_m_.find(system_.value); table != tables_m_.end()) base_table_m_ = table->second;
+    note_other_base();
   }
-  const Eigen::Vector3d origin = origin_m().value_or(Eigen::Vector3d::Zero());
+  // In a turned plane they count from its own zero.
+  const Eigen::Vector3d origin = tilted_ ? Eigen::Vector3d::Zero() : origin_m().value_or(Eigen::Vector3d::Zero());
+  Eigen::Vector3d position = in_program(from_m);
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.position[i]) continue;
     const auto axis = static_cast<Eigen::Index>(i);
@@ -317,7 +343,8 @@ Eigen::Vector3d GcodeReader::position_after(const Line& line) {
     known_[i] = true;
     check_coordinate(names[i], position[axis], *line.position[i], unit_name());
   }
-  return position;
+  if (!tilted_) return position;
+  return any(line.position) ? out_of_program(position) : from_m;
 }
 
 Eigen::Vector3d GcodeReader::axis_of_vector(const Line& line) const {
@@ -329,35 +356,6 @@ Eigen::Vector3d GcodeReader::axis_of_vector(const Line& line) const {
     }
   }
   return unit_axis("I, J, K", {*line.vector[0], *line.vector[1], *line.vector[2]});
-}
-
-void GcodeReader::turn_rotary(const Line& line) {
-  static constexpr std::array<const char*, 3> names = {"A", "B", "C"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!line.rotary[i]) continue;
-    if (!reading_.machine) {
-      reject(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
-             "Give program.machine: \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\" or \"xyzbc-head\"");
-    }
-    if (!has_axis(*reading_.machine, i)) {
-      reject(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
-             "Is it the other machine, with A in place of B or B in place of A?");
-    }
-    const auto axis = static_cast<Eigen::Index>(i);
-    if (incremental_ && lost_rotary_[i]) {
-      reject(names[i], *line.rotary[i], "deg", "is a step (G91) from an angle that is not known here", "Write G90");
-    }
-    lost_rotary_[i] = false;
-    rotary_deg_[axis] = *line.rotary[i] + (incremental_ ? rotary_deg_[axis] : 0.0);
-    if (!(std::abs(rotary_deg_[axis]) <= 1e6)) {
-      reject(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
-    }
-  }
-}
-
-RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
-  return {
-      .machine = *reading_.machine, .begin_rad = rotary_before_deg * units::deg, .end_rad = rotary_deg_ * units::deg};
 }
 
 Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
@@ -406,6 +404,8 @@ void GcodeReader::go(const Line& line) {
   if (motion_ == Motion::none) {
     reject("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
   }
+  begin_part_move();
+  if (tilted_) special_ = true;
   if (is_elsewhere(line)) return;
   switch (motion_) {
     case Motion::none:
@@ -424,10 +424,14 @@ void GcodeReader::go(const Line& line) {
 
 void GcodeReader::go_straight(const Line& line) {
   if (line.radius) {
-    reject("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
+    reject("R", *line.radius, unit_name(), "stands on a line that is no arc",
+           "Is a G2 or G3 missing before it? A corner is rounded by ,R with its comma");
   }
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
   if (pending_ && motion_ == Motion::feed) reject_unknown(unknown_axis() == nullptr ? "X, Y, Z" : unknown_axis());
+  // From a height that the change of the tool has left unknown no move at feed begins.
+  const bool begins_unknown = !start_ && reading_.tool && lost_.value && motion_ == Motion::feed;
+  if (const char* const first = unknown_axis(); begins_unknown && first != nullptr) reject_unknown(first);
   const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const char* const unknown = unknown_axis();
   if (unknown != nullptr && motion_ == Motion::feed) reject_unknown(unknown);
@@ -439,12 +443,17 @@ void GcodeReader::go_straight(const Line& line) {
     return;
   }
   if (!start_) {
+    if (line.corner) reject_no_begin(*line.corner);
     lost_ = {};
     begin_at(end);
     return;
   }
   if (pending_) {
     come_back(end);
+    return;
+  }
+  if (line.corner || corner_) {
+    go_by_corner(line, end.tip_m);
     return;
   }
   PartedMove parted = {.kind = motion_ == Motion::rapid ? Block::Kind::rapid : Block::Kind::feed,
@@ -467,15 +476,6 @@ void GcodeReader::go_straight(const Line& line) {
   } else {
     move(parted.kind, end, duration_s);
   }
-}
-
-void GcodeReader::check_shortest(const RotaryMove& turn) const {
-  constexpr double half_deg = 180.0;
-  const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
-  const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
-  if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
-  reject("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
-         "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 
 }  // namespace robomill::program

@@ -34,10 +34,16 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> feed = {};                       ///< under G94, a minute
     Eigen::Vector3d rotary_deg = Eigen::Vector3d::Zero();  ///< A, B, C
     Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();    ///< where X0 Y0 Z0 lies in W
+    double speed_rad_per_s = 0.0;
+    bool passes = false;   ///< the last line is in a part of a tool that is not chosen
     bool special = false;  ///< the last line's words of positions are no ends of its move, or it makes no move of them
   };
   [[nodiscard]] Modes modes() const;
 
+  /// Whether T alone changes the tool: the program has T words and no M6.
+  [[nodiscard]] static bool changes_tool_by_t(ProgramLines lines, const std::string& file);
+  /// … where a tool is chosen; else T prepares what M6 mounts.
+  void set_changes_tool_by_t() { by_t_ = true; }
   /// Whoever takes calls has the lines of the file; else lines that call are rejected.
   void allow_calls() { calls_allowed_ = true; }
   /// How many calls deep the next line is.
@@ -70,6 +76,9 @@ class GcodeReader final : public ProgramReader {
     home,         ///< G28, G30: by a point to the machine's own position
     machine,      ///< G53
     local,        ///< G52
+    turned,       ///< G68
+    tilted,       ///< G68.2
+    along_plane,  ///< G53.1
     shift,        ///< G92
     shift_reset,  ///< G92.1, G92.2
     table,        ///< G10
@@ -84,14 +93,15 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> feed = {}, radius = {}, e = {};
     std::optional<GcodeWords::Word> p = {}, q = {}, l = {};
     Special special = Special::none;
-    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {}, other_unit = {};
+    std::optional<GcodeWords::Word> special_code = {}, call = {}, cycle = {}, system = {}, other_unit = {}, corner = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
     std::optional<double> tool = {}, h = {};
     std::optional<GcodeWords::Word> length = {};  ///< the code of the tool's length
     std::optional<GcodeWords::Word> center_point = {};
     OperatorStop stop = OperatorStop::none;
-    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false, cycle_off = false;
+    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false, cycle_off = false,
+         frame_off = false;
     std::string left_out = {};
     [[nodiscard]] bool has(char letter) const;
     [[nodiscard]] bool moves() const;
@@ -110,12 +120,35 @@ class GcodeReader final : public ProgramReader {
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
 
+  /// A corner between the move to it, which waits, and the next one.
+  struct Corner {
+    std::size_t line = 0;
+    std::string name = {};  ///< ",R" or ",C"
+    double size_m = 0.0;
+    Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+    Eigen::Index normal = 2;  ///< of its plane
+    double s_per_m = 0.0;     ///< at the feed of its line
+    MoveStep::Running running = {};
+  };
+
+  /// Axes that words of positions count along, while they are not those of the work frame.
+  struct Tilted {
+    std::size_t line = 0;
+    std::string code = {};
+    bool plane = false;                                  ///< a plane in space that the tool can be turned to
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< in the work frame's, in columns
+    Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< from that of the work frame, along its axes
+  };
+
   void read(std::string_view statement) override;
   void at_end() override;
   bool advance() override;
   /// Of a line without words.
   void read_wordless();
   void carry_out(Line& line);
+  void carry_out_part(Line& line);
+  /// Modes, frames and the tool's axis alone.
+  void pass_over(const Line& line);
   /// @throws InvalidInput where words of a line do not go together
   void check_line(const Line& line) const;
   void leave_out_rest(Line& line) const;
@@ -156,6 +189,8 @@ class GcodeReader final : public ProgramReader {
   // frames.cpp
   void choose_system(const Line& line);
   [[nodiscard]] bool is_frame_number(const Line& line) const;
+  /// W is the frame of the chosen tool's first position, which may be another one than the program begins in.
+  void note_other_base() const;
   /// Where X0 Y0 Z0 lies in W; empty where that is not known.
   [[nodiscard]] std::optional<Eigen::Vector3d> origin_m() const;
   void set_local(const Line& line);
@@ -173,6 +208,37 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] const char* unknown_axis() const;
   [[noreturn]] void reject_unknown(const char* axis) const;
 
+  // planes.cpp
+  /// @throws InvalidInput where a line cannot turn or tilt a plane
+  void check_may_tilt(const Line& line) const;
+  /// … or would change the work frame beneath one.
+  void check_frame_stays(const Line& line) const;
+  void tilt(const Line& line);
+  void turn_plane(const Line& line);
+  void end_tilt();
+  void change_axes(const std::optional<Tilted>& to);
+  /// A position along an axis of the machine is not known from here on.
+  void lose_machine_axis(std::size_t axis);
+  void turn_to_plane(const Line& line);
+  /// A point of W as the words of positions count while a plane is turned, and back; else the same.
+  [[nodiscard]] Eigen::Vector3d in_program(const Eigen::Vector3d& point_m) const;
+  [[nodiscard]] Eigen::Vector3d out_of_program(const Eigen::Vector3d& point_m) const;
+  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& vector) const;
+
+  // corners.cpp
+  void take_corner(const GcodeWords::Word& word, Line& line);
+  [[noreturn]] void reject_no_begin(const GcodeWords::Word& corner) const;
+  [[noreturn]] void reject_corner(std::string rule, std::string hint) const;
+  /// @throws InvalidInput where a corner stands or waits beside what is no straight move
+  void check_corner(const Line& line) const;
+  /// A vector's components in the plane of arcs, and back.
+  [[nodiscard]] Eigen::Vector2d in_plane(const Eigen::Vector3d& vector) const;
+  [[nodiscard]] Eigen::Vector3d out_of_plane(const Eigen::Vector2d& vector) const;
+  /// A straight move with a corner at its end or its begin.
+  void go_by_corner(const Line& line, const Eigen::Vector3d& end_m);
+  /// The move to the corner that waits, and the corner.
+  void cut_corner(const Eigen::Vector3d& next_m);
+
   // cycles.cpp
   void choose_cycle(int code, const GcodeWords::Word& word, Line& line);
   void update_cycle(const Line& line);
@@ -185,7 +251,7 @@ class GcodeReader final : public ProgramReader {
   void call_program(const Line& line);
   void control(const OWord& word);
 
-  // gcode_machine.cpp
+  // tools.cpp and machine.cpp
   void take_m(const GcodeWords::Word& word, Line& line);
   void set_up(const Line& line);
   void set_length(const GcodeWords::Word& word, const Line& line);
@@ -198,7 +264,8 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] std::optional<Change> setup_change(const Line& line) const;
   [[nodiscard]] bool center_point_lost(const Line& line) const;
   [[noreturn]] void reject_change(const Change& change) const;
-  void mount(double number);
+  void mount(double number, const char* code);
+  void name_tool(double number);
   void list_tools(std::string_view statement);
   void begin_cutting();
 
@@ -213,7 +280,7 @@ class GcodeReader final : public ProgramReader {
   /// Of an arc's radius where its line has so many decimals.
   [[nodiscard]] double rounding_m(int decimals) const;
   void note_rounding(const Arc& arc, double chord_m, double strict_m) const;
-  [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_m) const;
+  [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_in_w_m) const;
   [[nodiscard]] double turns_of(const Line& line) const;
 
   GcodeWords words_;
@@ -255,6 +322,8 @@ class GcodeReader final : public ProgramReader {
     bool to_r = false;  ///< G99
   };
   Cycle cycle_;
+  std::optional<Corner> corner_;
+  std::optional<Tilted> tilted_;
 
   bool calls_allowed_ = false, returns_ = false;
   std::size_t depth_ = 0;
@@ -268,13 +337,14 @@ class GcodeReader final : public ProgramReader {
   Said<std::optional<double>> length_;  ///< H of G43; none: off. The tool's own counts as −1
   Said<CenterPoint> center_point_;
   bool cutting_ = false;  ///< a move at feed has come
-  struct Mounted {
-    double number;
-    std::size_t line;
-  };
-  std::vector<Mounted> mounted_;  ///< tools, by M6
-  std::size_t mounted_count_ = 0;
-  std::optional<Change> second_tool_;  ///< that cuts: from here on tools alone are looked at
+  std::size_t cutting_line_ = 0;
+  bool by_t_ = false;  ///< T mounts the tool
+  bool m6_has_come_ = false;
+  Said<std::optional<double>> named_, named_cutting_;  ///< by T, while no M6 has come; the one that cut first
+  std::optional<Change> second_named_;                 ///< that cuts
+  std::size_t second_named_line_ = 0;
+  std::optional<Said<int>> passed_system_;  ///< of the first position that is not read
+  std::optional<Change> second_tool_;       ///< that cuts: from here on tools alone are looked at
   std::size_t second_tool_line_ = 0;
   std::optional<double> cutting_tool_, cutting_length_;
 

@@ -114,12 +114,13 @@ void GcodeWords::scan(std::string_view line, const std::string& file, std::size_
       reject(place, rest, "is a parameter or an expression, which are not read here",
              "Let the CAM system write numbers");
     }
-    if (*at == ',') {
-      reject(place, rest, "rounds or chamfers a corner, which is not read here",
-             "Let the CAM system write corners as arcs G2, G3 and straight moves");
+    const bool corner = *at == ',';
+    if (corner && !(rest.size() > 1 && (rest[1] == 'r' || rest[1] == 'c'))) {
+      reject(place, rest, "is a word of drawings (angles, bends) that is not read here",
+             "Let the CAM system write straight moves and arcs; corners may be ,R and ,C");
     }
-    if (!is_letter(*at)) reject(place, rest, "must begin with a letter: words are a letter and a number");
-    const char* digits = at + 1;
+    if (!corner && !is_letter(*at)) reject(place, rest, "must begin with a letter: words are a letter and a number");
+    const char* digits = at + (corner ? 2 : 1);
     if (digits != end && *digits == '+') ++digits;
     // from_chars would take "inf", "nan" and a second sign.
     const char* const first = digits != end && *digits == '-' && *(digits - 1) != '+' ? digits + 1 : digits;

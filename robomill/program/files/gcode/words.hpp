@@ -28,7 +28,7 @@ struct OWord {
 class GcodeWords {
  public:
   struct Word {
-    char letter = 0;        ///< lower case
+    char letter = 0;        ///< lower case; a comma of the corners ",r5" and ",c5"
     double number = 0.0;    ///< finite
     std::string_view text;  ///< letter and number, without blanks; until the next scan
   };

@@ -91,6 +91,8 @@ void AptRewriter::note(Statement& statement) {
   statement.round = round;
   statement.says_feed = word_ == "FEDRAT";
   statement.says_speed = says_speed();
+  statement.passes = modes.passes;
+  statement.takes_speed = statement.takes_feed = modes.passes && word_.starts_with("GO");
   if (statement.says_feed) points_.feed = points_.feed || point;
   if (statement.says_speed) points_.speed = points_.speed || point;
   const Move move = move_of(statement);
@@ -348,8 +350,32 @@ void AptRewriter::add_feed(std::size_t index, Composed& composed) {
   if (!line.empty()) composed.before.push_back(std::move(line));
 }
 
+Rewriter::Composed AptRewriter::compose_passed(std::size_t index) const {
+  Composed composed;
+  if (!leaves_part(index)) return composed;
+  check_left_as_read(index);
+  const AptReader::Modes& read = modes_[index - 1];
+  const AptReader::Modes held = out_.modes();
+  const Carried carried = carried_from(index);
+  if (carried.speed && !same_rate(read.speed_rad_per_s, held.speed_rad_per_s)) {
+    const Spindle direction = job().as_read.blocks[statements()[index].first_block - 1].spindle;
+    composed.before.push_back(fmt::format("SPINDL/{},RPM,{}",
+                                          significant_text(read.speed_rad_per_s / units::rpm, points_.speed),
+                                          direction == Spindle::counterclockwise ? "CCLW" : "CLW"));
+  }
+  const bool same_feed = same_rate(read.feed, held.feed) && read.feed_in_inches == held.feed_in_inches &&
+                         read.feed_per_revolution == held.feed_per_revolution;
+  if (carried.feed && read.feed > 0.0 && !same_feed) {
+    const char* const unit =
+        read.feed_per_revolution ? (read.feed_in_inches ? "IPR" : "MMPR") : (read.feed_in_inches ? "IPM" : "MMPM");
+    composed.before.push_back(fmt::format("FEDRAT/{},{}", significant_text(read.feed, points_.feed), unit));
+  }
+  return composed;
+}
+
 Rewriter::Composed AptRewriter::compose(std::size_t index) {
   const Statement& statement = statements()[index];
+  if (statement.passes) return compose_passed(index);
   split(statement);
   Composed composed;
   motions_ = {};

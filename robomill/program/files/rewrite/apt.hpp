@@ -37,6 +37,8 @@ class AptRewriter final : public Rewriter {
   Composed compose(std::size_t index) override;
   [[nodiscard]] std::string comment(std::string_view text) const override { return fmt::format("$$ {}", text); }
 
+  /// A statement of another tool: it stays, and what it takes over is said again before the first of them.
+  [[nodiscard]] Composed compose_passed(std::size_t index) const;
   void split(const Statement& statement);
   /// The one field that is a number; none where there is none, or several.
   [[nodiscard]] const Field* number_field() const;

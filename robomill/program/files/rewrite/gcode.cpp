@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/program/files/program_lines.hpp"
 
 namespace robomill::program {
 namespace {
@@ -44,6 +45,17 @@ const char* motion_number(GcodeReader::Motion motion) {
 }
 
 }  // namespace
+
+GcodeRewriter::GcodeRewriter(const RewriteJob& job)
+    : Rewriter(job),
+      in_(job.file, job.reading, remarks_),
+      out_(std::make_unique<GcodeReader>(job.file, job.reading, remarks_)) {
+  if (!job.reading.tool || !GcodeReader::changes_tool_by_t(ProgramLines(job.file, std::string(job.text)), job.file)) {
+    return;
+  }
+  in_.set_changes_tool_by_t();
+  out_->set_changes_tool_by_t();
+}
 
 void GcodeRewriter::scan(const Statement& statement) {
   words_.clear();
@@ -102,6 +114,14 @@ void GcodeRewriter::note(Statement& statement) {
   statement.says_speed = find('s') != nullptr;
   statement.says_feed = modal && find('f') != nullptr;
   statement.breaks_feed = after.feed_mode != before.feed_mode;
+  statement.passes = after.passes;
+  if (after.passes) {
+    const bool starts_spindle = std::ranges::any_of(
+        words_, [](const Word& word) { return word.letter == 'm' && (word.number == 3.0 || word.number == 4.0); });
+    statement.takes_speed = moves() || starts_spindle;
+    statement.takes_feed = modal && moves() && after.motion != Motion::rapid;
+    return;
+  }
   const Move move = move_of(statement);
   const std::span<const Block> blocks =
       std::span(job().as_read.blocks).subspan(statement.first_block, statement.blocks);
@@ -370,6 +390,40 @@ Rewriter::Composed GcodeRewriter::compose_parted(std::size_t index, const Move& 
   return split(index, pieces_of(index, move));
 }
 
+Rewriter::Composed GcodeRewriter::compose_passed(std::size_t index) const {
+  Composed composed;
+  if (!leaves_part(index)) return composed;
+  check_left_as_read(index);
+  const Statement& statement = statements()[index];
+  const Modes& read = modes_[index - 1];
+  const Modes held = out_->modes();
+  if (!read.rotary_deg.isApprox(held.rotary_deg, 1e-9)) {
+    reject(statement.line, "A, B, C", "must stand as in the program where the part of another tool begins");
+  }
+  std::string line;
+  const auto says = [&](char letter, const std::string& number) {
+    line += (line.empty() ? "" : " ") + word_text(letter, number);
+  };
+  if (read.motion != held.motion) {
+    if (read.motion != Motion::rapid && read.motion != Motion::feed) {
+      reject(statement.line, "G", "cannot be kept where the part of another tool begins after an arc or a cycle",
+             "End the chosen tool's part by a G0");
+    }
+    says('g', motion_number(read.motion));
+  }
+  const Carried carried = carried_from(index);
+  if (carried.speed && !same_rate(read.speed_rad_per_s, held.speed_rad_per_s)) {
+    says('s', significant_text(read.speed_rad_per_s / units::rpm, points_.speed));
+  }
+  const bool feed = carried.feed && read.feed && held.feed;
+  if (feed && !same_rate(per_minute(*read.feed, read.feed_in_inches, false),
+                         per_minute(*held.feed, held.feed_in_inches, false))) {
+    says('f', feed_text(per_minute(*read.feed, read.feed_in_inches, false), read.inches, false, nullptr));
+  }
+  if (!line.empty()) composed.before.push_back(line);
+  return composed;
+}
+
 // Its positions stay: what a machine makes of them is not said by their words alone.
 Rewriter::Composed GcodeRewriter::compose_special(std::size_t index) const {
   const Statement& statement = statements()[index];
@@ -382,7 +436,8 @@ Rewriter::Composed GcodeRewriter::compose_special(std::size_t index) const {
   }
   if (!same && statement.blocks > 0) {
     reject(statement.line, "tip",
-           "cannot be moved where a line drills by a cycle or brings the tool back from the machine's own position",
+           "cannot be moved where a line drills by a cycle, rounds a corner, lies in a turned plane or brings the tool "
+           "back from the machine's own position",
            "Let the CAM system write its moves as G0 and G1");
   }
   Composed composed;
@@ -400,7 +455,7 @@ void GcodeRewriter::check_cycle_feed(const Statement& statement) const {
     const double this_ratio = job().wanted.blocks[i].duration_s / block.duration_s;
     if (!ratio) ratio = this_ratio;
     if (same_rate(this_ratio, *ratio)) continue;
-    reject(statement.line, "feed", "must be one for all moves of the drilling cycle that this line says",
+    reject(statement.line, "feed", "must be one for all moves of the drilling cycle or the corner that this line says",
            "The line has one F");
   }
 }
@@ -409,6 +464,7 @@ Rewriter::Composed GcodeRewriter::compose(std::size_t index) {
   const Statement& statement = statements()[index];
   scan(statement);
   if (words_.empty()) return {};
+  if (modes_[index].passes) return compose_passed(index);
   if (modes_[index].special) return compose_special(index);
   const Move move = move_of(statement);
   if (move.count > 1 || statement.round) return compose_parted(index, move);

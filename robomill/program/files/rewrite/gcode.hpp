@@ -16,10 +16,7 @@ namespace robomill::program {
 /// Rewrites G-code.
 class GcodeRewriter final : public Rewriter {
  public:
-  explicit GcodeRewriter(const RewriteJob& job)
-      : Rewriter(job),
-        in_(job.file, job.reading, remarks_),
-        out_(std::make_unique<GcodeReader>(job.file, job.reading, remarks_)) {}
+  explicit GcodeRewriter(const RewriteJob& job);
 
  private:
   using Motion = GcodeReader::Motion;
@@ -69,6 +66,8 @@ class GcodeRewriter final : public Rewriter {
   /// @param word  whose number it replaces; null: a new one's
   [[nodiscard]] std::string feed_text(double per_minute, bool inches, bool degrees, const Word* word) const;
 
+  /// A line of another tool: it stays, and what it takes over is said again before the first of them.
+  [[nodiscard]] Composed compose_passed(std::size_t index) const;
   /// A line whose words of positions are no ends of its move.
   [[nodiscard]] Composed compose_special(std::size_t index) const;
   /// @throws InvalidInput where the moves of a drilling cycle ask for several feeds

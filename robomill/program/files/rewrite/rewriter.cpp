@@ -114,6 +114,35 @@ void Rewriter::read_statements() {
   }
 }
 
+bool Rewriter::leaves_part(std::size_t index) const {
+  const Statement& statement = statements_[index];
+  return index > 0 && statement.passes && !statements_[index - 1].passes && statement.first_block > 0;
+}
+
+Rewriter::Carried Rewriter::carried_from(std::size_t index) const {
+  Carried out;
+  bool speed_said = false;
+  bool feed_said = false;
+  for (std::size_t i = index; i < statements_.size() && statements_[i].passes; ++i) {
+    const Statement& statement = statements_[i];
+    speed_said = speed_said || statement.says_speed;
+    feed_said = feed_said || statement.says_feed || statement.breaks_feed;
+    out.speed = out.speed || (statement.takes_speed && !speed_said);
+    out.feed = out.feed || (statement.takes_feed && !feed_said);
+  }
+  return out;
+}
+
+void Rewriter::check_left_as_read(std::size_t index) const {
+  const Statement& statement = statements_[index];
+  const std::string problem = pose_difference(job_.as_read.blocks[statement.first_block - 1].end,
+                                              job_.wanted.blocks[statement.first_block - 1].end);
+  if (problem.empty()) return;
+  reject(statement.line, "tip",
+         "must be as it was read where the part of another tool begins, which starts from there: " + problem,
+         "End the chosen tool's part by a rapid that stays as it is");
+}
+
 void Rewriter::look_ahead() {
   std::size_t feed = none;
   std::size_t speed_until = job_.as_read.blocks.size();
@@ -412,6 +441,11 @@ Rewriter::Result Rewriter::rewrite(const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < statements_.size(); ++i) {
     if (i == place) write_header(header, result);
     write(i, result);
+  }
+  for (const ToolPart& part : in().tools().parts()) {
+    const bool known = !part.number || part.number == job_.reading.tool ||
+                       std::ranges::find(result.other_tools, *part.number) != result.other_tools.end();
+    if (job_.reading.tool && !known) result.other_tools.push_back(*part.number);
   }
   const std::size_t end = statements_.back().end;
   result.rewritten.text.append(text.substr(end));

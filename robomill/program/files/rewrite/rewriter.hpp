@@ -46,6 +46,7 @@ class Rewriter {
   struct Result {
     Rewritten rewritten;
     std::vector<std::size_t> origins;  ///< of each new line: the program's line that it comes from; 0: the header
+    std::vector<int> other_tools;      ///< whose parts of the program are not those that were read
   };
   /// @throws InvalidInput as rewrite_program
   Result rewrite(const std::vector<std::string>& header);
@@ -61,11 +62,13 @@ class Rewriter {
     bool after_start = false;  ///< comes behind it
     // What the dialect notes:
     bool says_speed = false;
-    bool says_feed = false;      ///< that holds until another one does
-    bool breaks_feed = false;    ///< a feed said before means nothing from here on
-    bool moves_at_feed = false;  ///< by the feed that holds
-    bool round = false;          ///< an arc
-    double per_minute = 0.0;     ///< its feed as read [mm or deg]
+    bool says_feed = false;                        ///< that holds until another one does
+    bool breaks_feed = false;                      ///< a feed said before means nothing from here on
+    bool moves_at_feed = false;                    ///< by the feed that holds
+    bool round = false;                            ///< an arc
+    double per_minute = 0.0;                       ///< its feed as read [mm or deg]
+    bool passes = false;                           ///< of a tool that was not read …
+    bool takes_speed = false, takes_feed = false;  ///< … and runs by the speed and the feed that hold
     // What follows from those behind it:
     std::size_t speed_until = 0;  ///< the first block that another statement's speed holds for
     std::size_t feeds = none;     ///< the first statement that moves by the feed said here, where it does not itself
@@ -159,6 +162,15 @@ class Rewriter {
   void check_one_speed(const Statement& statement, const char* field) const;
   [[nodiscard]] double wanted_rpm(std::size_t block) const;
 
+  /// Whether the part of the chosen tool ends before a statement.
+  [[nodiscard]] bool leaves_part(std::size_t index) const;
+  /// What the parts of other tools, from a statement on, take over from those before it.
+  struct Carried {
+    bool speed = false, feed = false;
+  };
+  [[nodiscard]] Carried carried_from(std::size_t index) const;
+  /// @throws InvalidInput where the part before a statement ends elsewhere than as read
+  void check_left_as_read(std::size_t index) const;
   /// Looks at how a position is written.
   void note_position(std::string_view number);
   /// Whether positions, feeds, speeds are written with a point where they are whole.
