@@ -591,7 +591,7 @@ TEST_F(Init, HitsInOneRecordAndInSeveralFilesAreFound) {
   const InitFiles files = made({.kind = Template::hits});
   EXPECT_EQ(files.notes.size(), 1U);
   const std::string document = slurp(at("hits.toml"));
-  EXPECT_NE(document.find("\nfile = \"hit_x_1.csv\"               # 3 hits, which are cut apart\n"), std::string::npos)
+  EXPECT_NE(document.find("\nfile = \"hit_x_1.csv\"                # 3 hits, which are cut apart\n"), std::string::npos)
       << document;
   EXPECT_NE(document.find("\nfile = [\"force_x_2.csv\", \"acc_x_2.csv\"] # 3 hits, which are cut apart\n"),
             std::string::npos)
