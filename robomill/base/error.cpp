@@ -2,13 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include "robomill/base/printable.hpp"
 
 namespace robomill {
 namespace {
+
+/// Names and values come from files. Line ends before an indent are ours: lines to copy, reasons below each other.
+std::string printable_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find("\n  ", at), text.size());
+    out += printable(std::string_view(text).substr(at, end - at));
+    if (end < text.size()) out += '\n';
+    at = end + 1;
+  }
+  return out;
+}
 
 std::string compose(const InvalidInput::Parts& p) {
   std::string text;
@@ -20,10 +35,10 @@ std::string compose(const InvalidInput::Parts& p) {
     subject += value;
     if (!p.unit.empty()) subject += " " + p.unit;
   }
-  text += subject;
-  if (!p.rule.empty()) text += (subject.empty() ? "" : value.empty() ? ": " : "; ") + p.rule;
-  if (!p.hint.empty()) text += ". " + p.hint;
-  return printable(text);  // names and values come from files
+  text = printable(text + subject);
+  if (!p.rule.empty()) text += (subject.empty() ? "" : value.empty() ? ": " : "; ") + printable_lines(p.rule);
+  if (!p.hint.empty()) text += ". " + printable_lines(p.hint);
+  return text;
 }
 
 }  // namespace

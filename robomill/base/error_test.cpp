@@ -23,6 +23,14 @@ TEST(InvalidInput, ReadsWellWithoutAValue) {
   EXPECT_STREQ(InvalidInput("hits.csv", "no such file").what(), "hits.csv: no such file");
 }
 
+// Lines to copy stand below each other; a line end that a file has is none.
+TEST(InvalidInput, KeepsLinesThatAreIndented) {
+  const InvalidInput error("a.csv\n  b", "says too little\nor too much",
+                           "Write these lines:\n  [hits]\n  force = \"a\x1b\"");
+  EXPECT_STREQ(error.what(),
+               "a.csv\\n  b: says too little\\nor too much. Write these lines:\n  [hits]\n  force = \"a\\x1b\"");
+}
+
 TEST(Require, RejectsNaNAndInfinity) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -570,6 +570,35 @@ TEST_F(Init, HitsOfLabviewAreRead) {
   EXPECT_NEAR(hit.responses.at(0).samples(154), 9.80665 * std::exp(-0.04) * std::sin(1.6), 1e-5);
 }
 
+// Several hits of a record, and force and responses in files of their own.
+TEST_F(Init, HitsInOneRecordAndInSeveralFilesAreFound) {
+  const auto text = [](const std::string& header, bool force, bool response) {
+    std::string out = header;
+    for (int i = 0; i < 30'000; ++i) {
+      const int since = i % 10'000 - 150;
+      const double pushed = since >= 0 && since < 10 ? 100.0 * std::sin(std::numbers::pi * since / 10.0) : 0.0;
+      const double moved = since < 0 ? 0.0 : std::exp(-0.01 * since) * std::sin(0.4 * since);
+      out += fmt::format("{:.4f}", i * 1e-4);
+      if (force) out += fmt::format(",{:.6f}", pushed);
+      if (response) out += fmt::format(",{:.6f}", moved);
+      out += "\n";
+    }
+    return out;
+  };
+  put("hit_x_1.csv", text("time_s,force_n,ax_m_per_s2\n", true, true));
+  put("force_x_2.csv", text("time_s,force_n\n", true, false));
+  put("acc_x_2.csv", text("time_s,ax_m_per_s2\n", false, true));
+  const InitFiles files = made({.kind = Template::hits});
+  EXPECT_EQ(files.notes.size(), 1U);
+  const std::string document = slurp(at("hits.toml"));
+  EXPECT_NE(document.find("\nfile = \"hit_x_1.csv\"                # 3 hits, which are cut apart\n"), std::string::npos)
+      << document;
+  EXPECT_NE(document.find("\nfile = [\"force_x_2.csv\", \"acc_x_2.csv\"] # 3 hits, which are cut apart\n"),
+            std::string::npos)
+      << document;
+  EXPECT_EQ(modal::read_hits(at("hits.toml")).hits.size(), 6U);
+}
+
 // A time with three digits is no response; its rate is that of the whole column.
 TEST_F(Init, ARoundedTimeIsTheTime) {
   std::string text = "X,force_n,acc x\n";

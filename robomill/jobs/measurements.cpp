@@ -9,6 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/frf.hpp"
@@ -16,6 +17,7 @@
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/stiffness.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/hit_files/bare_hits.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/usual_arm.hpp"
 
@@ -53,9 +55,17 @@ void warn_of_loads(StiffnessResult& result) {
 
 }  // namespace
 
-FrfJobResult run_frf(const std::filesystem::path& hits, Progress& progress) {
+FrfJobResult run_frf(const std::vector<std::filesystem::path>& inputs, Progress& progress) {
+  const auto is_record = [](const std::filesystem::path& path) {
+    return io::is_read_as_record(path) || !io::unread_record(path).what.empty();
+  };
+  const auto document = std::ranges::find_if_not(inputs, is_record);
+  if (document != inputs.end() && inputs.size() > 1) {
+    throw InvalidInput(document->string(), "is no record of hits, and stands beside others",
+                       "Give one hits.toml, or records alone");
+  }
   FrfJobResult out;
-  out.file = modal::read_hits(hits);
+  out.file = document != inputs.end() ? modal::read_hits(*document) : modal::read_bare_hits(inputs);
   out.frfs = modal::estimate_frfs(out.file.hits, out.file.options, progress);
   return out;
 }

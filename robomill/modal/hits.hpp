@@ -46,6 +46,7 @@ struct Hit {
   double sample_rate_hz = 0.0;  ///< > 0; required
   Eigen::VectorXd force_n;      ///< length n; a push reads positive, whichever way it goes along the axis
   std::vector<HitChannel> responses;
+  std::string fault = {};  ///< of the record as it was cut out of a longer one: rejects the hit; empty: none
 };
 
 struct HitOptions {

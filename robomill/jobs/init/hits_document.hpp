@@ -1,13 +1,9 @@
 #pragma once
 #include <string>
-#include <string_view>
 
 #include "robomill/modal/files/found_hits.hpp"
 
 namespace robomill::jobs {
-
-/// Of a hammer [mV/N] and an accelerometer [mV/g] of which nothing is known: to show, not to compute with.
-inline constexpr std::string_view usual_force_mv_per_n = "2.25", usual_response_mv_per_g = "100";
 
 /// hits.toml: that of the template where nothing was found, else the template's keys with a table for each record, what
 /// is guessed from it marked so. What no record says (sensitivities, a rate) stands behind a #.

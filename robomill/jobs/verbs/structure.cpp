@@ -20,7 +20,7 @@ VerbOption assembly_input() {
 }
 
 Outcome run_frf_verb(const VerbJob& job, Progress& progress) {
-  return finished(job, run_frf(job.input(), progress), modal::FrfWriteOptions{.binary_uff = job.flag("binary")});
+  return finished(job, run_frf(job.inputs, progress), modal::FrfWriteOptions{.binary_uff = job.flag("binary")});
 }
 
 Outcome run_modes_verb(const VerbJob& job, Progress& progress) {
@@ -73,10 +73,17 @@ Verb frf_verb() {
   return {.name = "frf",
           .button = "Estimate FRFs",
           .purpose = "hammer hits to frequency response functions",
-          .more = "Hits are CSV, TXT, MAT, UFF, WAV, LVM or TDMS. Each has a grade, and a remedy for each fault.",
+          .more =
+              "Hits are CSV, TXT, MAT, UFF, WAV, LVM or TDMS, named in hits.toml, or given in its place where their "
+              "columns have names and units. Each hit of a record is judged, each FRF has a grade, and each fault a "
+              "remedy.",
           .example = "frf hits.toml -o tip.uff",
           .readme = "robomill/modal/README.md",
-          .input = file_option("hits", "hits.toml", {"hits"}, true),
+          .input = {.name = "hits",
+                    .meaning = "hits.toml, or records of hits",
+                    .takes = Takes::files,
+                    .required = true,
+                    .kinds = {"hits", "record"}},
           .output = "tip.uff",
           .document = Document::frfs,
           .options = {flag_option("binary", "write .uff as data set 58b")},

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/records/records.hpp"
+#include "robomill/modal/files/hit_files/hit_sets.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -43,12 +45,12 @@ std::string difference(const FoundHit& hit, const FoundHit& other) {
   const double rate_hz = hit.sample_rate_hz, other_hz = other.sample_rate_hz;
   if (rate_hz > 0.0 && other_hz > 0.0 && std::abs(rate_hz - other_hz) > same_rate * other_hz) {
     return fmt::format("its sample rate is {:.6g} Hz, that of {} {:.6g} Hz, and all hits must have one", rate_hz,
-                       other.file, other_hz);
+                       other.name(), other_hz);
   }
   for (const auto& [role, what] : {std::pair{Role::force, "force"}, {Role::response, "response"}}) {
     if (same_unit(hit, other, role)) continue;
     return fmt::format("its {} is in {}, that of {} in {}, and hits.toml has one unit for all", what,
-                       unit_text(hit, role), other.file, unit_text(other, role));
+                       unit_text(hit, role), other.name(), unit_text(other, role));
   }
   return {};
 }
@@ -71,7 +73,7 @@ void keep_what_goes_together(FoundHits& found) {
     if (reason.empty()) {
       found.hits.push_back(hit);
     } else {
-      found.left_out.push_back(fmt::format("{}: {}", hit.file, reason));
+      found.left_out.push_back(fmt::format("{}: {}", hit.name(), reason));
     }
   }
 }
@@ -116,49 +118,107 @@ std::vector<fs::path> records_in(const fs::path& folder) {
   return paths;
 }
 
+std::string relative_name(const fs::path& path, const fs::path& folder) {
+  return fs::absolute(path)
+      .lexically_normal()
+      .lexically_proximate(fs::absolute(folder).lexically_normal())
+      .generic_string();
+}
+
+std::string reason_of(const InvalidInput& error) {
+  const InvalidInput::Parts& parts = error.parts();
+  return fmt::format("{}{}{}", parts.rule, parts.hint.empty() ? "" : ". ", parts.hint);
+}
+
+/// One file by itself; none: it shows no hit. @throws InvalidInput as io::read_record
+std::optional<FoundHit> found_alone(const fs::path& path) {
+  const io::Record record = io::read_record(path);
+  FoundHit hit{.format = io::format_of(path), .guess = guess_hit(record)};
+  if (!hit.guess.is_hit()) return std::nullopt;
+  const std::vector<std::size_t> times = hit.guess.with(Role::time);
+  if (!times.empty()) {
+    if (!hit.guess.rounded_time) static_cast<void>(io::sample_rate_of(record.columns[times.front()], path.string()));
+    const ColumnGuess& time = hit.guess.columns[times.front()];
+    if (time.si_per_unit == 1.0 && !hit.guess.rounded_time) hit.time = time.name;
+  }
+  hit.sample_rate_hz = hit.guess.sample_rate_hz;
+  return hit;
+}
+
+constexpr const char* no_hit =
+    "no column looks like a hammer's force, one short pulse, beside a response. Of two files, give force and responses "
+    "names that differ by these words alone (force_1.csv, acc_1.csv), or write file = [\"FORCE\", \"RESPONSE\"]";
+
+/// Files that show no hit by themselves may together.
+void add_sets(const std::vector<fs::path>& alone, bool of_any_name, const fs::path& folder, FoundHits& found) {
+  std::vector<std::vector<fs::path>> sets;
+  if (of_any_name && alone.size() == 2) {
+    sets.push_back(alone);
+  } else {
+    sets = sets_by_name(alone);
+  }
+  for (std::vector<fs::path>& set : sets) {
+    std::string reason = no_hit;
+    std::optional<FoundHit> hit;
+    try {
+      if (set.size() > 1) hit = found_in_set(set);
+    } catch (const InvalidInput& error) {
+      reason = reason_of(error);
+    }
+    std::vector<std::string> names;
+    for (const fs::path& path : set) names.push_back(relative_name(path, folder));
+    if (hit) {
+      hit->files = std::move(names);
+      found.hits.push_back(std::move(*hit));
+    } else {
+      found.left_out.push_back(fmt::format("{}: {}", fmt::join(names, " + "), reason));
+    }
+  }
+}
+
+FoundHits found_among(const std::vector<fs::path>& paths, const fs::path& folder, bool of_any_name) {
+  FoundHits found;
+  std::vector<fs::path> others;
+  for (const fs::path& path : paths) {
+    try {
+      if (std::optional<FoundHit> hit = found_alone(path)) {
+        hit->files = {relative_name(path, folder)};
+        found.hits.push_back(std::move(*hit));
+      } else {
+        others.push_back(path);
+      }
+    } catch (const InvalidInput& error) {
+      found.left_out.push_back(fmt::format("{}: {}", relative_name(path, folder), reason_of(error)));
+    }
+  }
+  add_sets(others, of_any_name, folder, found);
+  std::ranges::stable_sort(
+      found.hits, [](const FoundHit& a, const FoundHit& b) { return comes_before(a.files.front(), b.files.front()); });
+  keep_what_goes_together(found);
+  return found;
+}
+
 }  // namespace
 
 FoundHits find_hits(const fs::path& data, const fs::path& folder, std::string_view made_up) {
-  FoundHits found;
   std::vector<fs::path> paths = records_in(data);
+  std::string more;
   if (paths.size() > most_records) {
-    found.left_out.push_back(fmt::format("{} files more in {}", paths.size() - most_records, data.string()));
+    more = fmt::format("{} files more in {}", paths.size() - most_records, data.string());
     paths.resize(most_records);
   }
-  for (const fs::path& path : paths) {
-    const std::string name = fs::absolute(path)
-                                 .lexically_normal()
-                                 .lexically_proximate(fs::absolute(folder).lexically_normal())
-                                 .generic_string();
-    if (path.filename() == made_up) continue;
-    try {
-      const io::Record record = io::read_record(path);
-      HitGuess guess = guess_hit(record);
-      if (!guess.is_hit()) {
-        found.left_out.push_back(name +
-                                 ": no column looks like a hammer's force, one short pulse, beside a response. Of two "
-                                 "files, write force and "
-                                 "response beside each other in one CSV");
-        continue;
-      }
-      FoundHit hit{.file = name, .format = io::format_of(path), .sample_rate_hz = record.sample_rate_hz};
-      const std::vector<std::size_t> times = guess.with(ColumnGuess::Role::time);
-      if (!times.empty()) {
-        const double per_unit = guess.columns[times.front()].si_per_unit;
-        const Eigen::VectorXd& time = record.columns[times.front()];
-        const double rounded_hz = io::rounded_sample_rate_of(time);
-        hit.rounded_time = rounded_hz > 0.0;
-        hit.sample_rate_hz = (hit.rounded_time ? rounded_hz : io::sample_rate_of(time, path.string())) / per_unit;
-      }
-      hit.guess = std::move(guess);
-      found.hits.push_back(std::move(hit));
-    } catch (const InvalidInput& error) {
-      const InvalidInput::Parts& parts = error.parts();
-      found.left_out.push_back(fmt::format("{}: {}{}{}", name, parts.rule, parts.hint.empty() ? "" : ". ", parts.hint));
-    }
-  }
-  keep_what_goes_together(found);
+  std::erase_if(paths, [&](const fs::path& path) { return path.filename() == made_up; });
+  FoundHits found = found_among(paths, folder, false);
+  if (!more.empty()) found.left_out.insert(found.left_out.begin(), more);
   return found;
+}
+
+FoundHits find_hits(const std::vector<fs::path>& files, const fs::path& folder) {
+  return found_among(files, folder, true);
+}
+
+std::string FoundHit::name() const {
+  return fmt::format("{}", fmt::join(files, " + "));
 }
 
 const ColumnGuess* FoundHit::first(ColumnGuess::Role role) const {

@@ -12,30 +12,38 @@
 
 namespace robomill::modal {
 
-/// A record that looks like one of a hit.
+/// A record that looks like one of hits.
 struct FoundHit {
-  std::string file = {};  ///< relative to hits.toml
+  std::vector<std::string> files =
+      {};  ///< relative to hits.toml; several: force and responses apart, the force's first
   io::Format format = io::Format::unknown;
   double sample_rate_hz = 0.0;  ///< 0: not known
-  bool rounded_time = false;    ///< its column of time has too few digits to be read: the rate is that of all of it
-  HitGuess guess = {};
+  std::string time = {};  ///< column of the time in s as hits.toml names it; empty: it is found by its name, or none
+  HitGuess guess = {};    ///< of the columns of all files one after the other, named as hits.toml names them
 
   /// The first column with that role; null: none.
   [[nodiscard]] const ColumnGuess* first(ColumnGuess::Role role) const;
+  /// Its files: "force.csv + acc.csv".
+  [[nodiscard]] std::string name() const;
 };
 struct FoundHits {
   std::vector<FoundHit> hits = {};
   std::vector<std::string> left_out = {};  ///< "NAME: why"
 };
 
-/// The records in a folder that look like those of hits, hit_2 before hit_10. Files with records that are not read, or
-/// show no hit, are left out. [acquisition] has one sample rate, one unit for the forces of all records and one for
-/// their responses: records that differ in them from what most have are left out too.
+/// The records in a folder that look like those of hits, hit_2 before hit_10. Two files or more whose names differ by
+/// words for force and response alone (impact_8.txt, accel_8.txt) are one record where no one of them is by itself.
+/// Files with records that are not read, or show no hit, are left out. [acquisition] has one sample rate, one unit for
+/// the forces of all records and one for their responses: records that differ in them from what most have are left out
+/// too.
 /// @param folder   that the names are relative to
 /// @param made_up  the name of a record that counts as none
 /// @throws InvalidInput if the folder cannot be read
 [[nodiscard]] FoundHits find_hits(const std::filesystem::path& data, const std::filesystem::path& folder,
                                   std::string_view made_up);
+
+/// The same of these files alone; two of them that are no hits by themselves may have any names.
+[[nodiscard]] FoundHits find_hits(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder);
 
 /// In which directions there are hits and sensors.
 struct MeasuredAxes {

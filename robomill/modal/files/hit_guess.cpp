@@ -11,6 +11,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/modal/impact/hit_split.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -19,21 +20,6 @@ using Role = ColumnGuess::Role;
 
 /// A record's rise is looked at in so many samples at most.
 constexpr Eigen::Index looked_at = 4096;
-
-/// Runs of letters and digits, in lower case.
-std::vector<std::string> words_of(std::string_view text) {
-  std::vector<std::string> words(1);
-  for (const char letter : io::lowered(text)) {
-    const auto byte = static_cast<unsigned char>(letter);
-    if (std::isalnum(byte) != 0 || byte >= 0x80) {
-      words.back() += letter;
-    } else if (!words.back().empty()) {
-      words.emplace_back();
-    }
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
 
 bool any_begins(const std::vector<std::string>& words, std::initializer_list<std::string_view> beginnings) {
   return std::ranges::any_of(words, [&](const std::string& word) {
@@ -117,7 +103,7 @@ double crest(const Eigen::VectorXd& column) {
 }
 
 /// Whether a force is that of a hammer: one short pulse, perhaps with bounces. A cut pushes once a tooth, a load stays.
-bool is_pulse(const Eigen::VectorXd& force) {
+bool is_pulse(const Eigen::Ref<const Eigen::VectorXd>& force) {
   constexpr double most_share = 0.1;  // of samples above half the peak: 4 ms of a soft tip within 50 ms are 5 %
   constexpr int most_pulses = 3;
   const auto count = static_cast<std::size_t>(force.size());
@@ -143,12 +129,42 @@ bool is_pulse(const Eigen::VectorXd& force) {
   return pulses <= most_pulses && static_cast<double>(above) <= most_share * static_cast<double>(count);
 }
 
+/// How many hits a force is of; 0: it is no hammer's.
+int hits_in(const Eigen::VectorXd& force, double sample_rate_hz) {
+  const std::vector<HitSegment> segments =
+      sample_rate_hz > 0.0 ? find_hit_segments(force, sample_rate_hz) : std::vector<HitSegment>();
+  if (segments.empty()) return is_pulse(force) ? 1 : 0;
+  const bool are_pulses = std::ranges::all_of(segments, [&](const HitSegment& segment) {
+    return is_pulse(force.segment(segment.begin, segment.end - segment.begin));
+  });
+  return are_pulses ? static_cast<int>(segments.size()) : 0;
+}
+
 /// A force that was found by its name may be that of a cut.
 void drop_other_forces(const io::Record& record, HitGuess& guess) {
   for (const std::size_t i : guess.with(Role::force)) {
-    if (is_pulse(record.columns[i])) continue;
+    if (const int hits = hits_in(record.columns[i], guess.sample_rate_hz); hits > 0) {
+      guess.hits = hits;
+      continue;
+    }
     guess.columns[i].role = Role::unknown;
     guess.columns[i].from.clear();
+  }
+}
+
+/// By the column of time, rounded or not, else as the record says it.
+void find_rate(const io::Record& record, HitGuess& guess) {
+  guess.sample_rate_hz = record.sample_rate_hz;
+  const std::vector<std::size_t> times = guess.with(Role::time);
+  if (times.empty()) return;
+  const Eigen::VectorXd& time = record.columns[times.front()];
+  const double rounded_hz = io::rounded_sample_rate_of(time);
+  guess.rounded_time = rounded_hz > 0.0;
+  try {
+    guess.sample_rate_hz =
+        (guess.rounded_time ? rounded_hz : io::sample_rate_of(time, {})) / guess.columns[times.front()].si_per_unit;
+  } catch (const InvalidInput&) {
+    guess.sample_rate_hz = 0.0;  // who reads the record says what is wrong with its time
   }
 }
 
@@ -204,13 +220,19 @@ void keep_one_of_each(HitGuess& guess) {
 void complete_directions(const io::Record& record, HitGuess& guess) {
   const std::vector<std::size_t> forces = guess.with(Role::force);
   const char of_column = forces.empty() ? '\0' : guess.columns[forces.front()].axis;
-  const char of_file = axis_of(words_of(record.file.stem().string()));
+  const char of_file = axis_of(words_in(record.file.stem().string()));
   if (of_column != 0) {
     guess.force_direction = of_column;
     guess.direction_from = "the column's name";
   } else if (of_file != 0) {
     guess.force_direction = of_file;
     guess.direction_from = "the file's name";
+  }
+  // Hit where the only sensor is, which says its direction.
+  const std::vector<std::size_t> responses = guess.with(Role::response);
+  if (guess.direction_from.empty() && responses.size() == 1 && guess.columns[responses.front()].axis != 0) {
+    guess.force_direction = guess.columns[responses.front()].axis;
+    guess.direction_from = "that of the only response";
   }
   std::string free = guess.force_direction + "xyz";
   for (const std::size_t i : guess.with(Role::response)) std::erase(free, guess.columns[i].axis);
@@ -228,14 +250,29 @@ void complete_directions(const io::Record& record, HitGuess& guess) {
 
 }  // namespace
 
+std::vector<std::string> words_in(std::string_view text) {
+  std::vector<std::string> words(1);
+  for (const char letter : io::lowered(text)) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (std::isalnum(byte) != 0 || byte >= 0x80) {
+      words.back() += letter;
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
 ColumnGuess guess_by_name(const io::Record& record, std::size_t place) {
   const std::string name = place < record.names.size() ? record.names[place] : std::string();
   ColumnGuess out;
   out.name = name.empty() ? std::to_string(place + 1) : name;
   out.unit = record.unit(place);
   apply_unit(out);
-  const std::vector<std::string> words = words_of(name);
+  const std::vector<std::string> words = words_in(name);
   out.axis = axis_of(words);
+  out.axis_said = out.axis != 0;
   const auto is = [&](Role role) {
     out.role = role;
     out.from = "its name";
@@ -276,12 +313,13 @@ HitGuess guess_hit(const io::Record& record) {
     if (twice) guess.columns.back().name = std::to_string(i + 1);
   }
   // Lines over frequency are no record of time.
-  if (std::ranges::any_of(record.names, [](const std::string& n) { return any_begins(words_of(n), {"freq", "hz"}); })) {
+  if (std::ranges::any_of(record.names, [](const std::string& n) { return any_begins(words_in(n), {"freq", "hz"}); })) {
     for (ColumnGuess& column : guess.columns) column.role = Role::unknown;
     return guess;
   }
   find_times(record, guess);
   guess_by_signal(record, guess);
+  find_rate(record, guess);
   drop_other_forces(record, guess);
   keep_one_of_each(guess);
   complete_directions(record, guess);

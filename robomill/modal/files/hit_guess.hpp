@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/io/records/records.hpp"
@@ -10,6 +11,9 @@
 
 namespace robomill::modal {
 
+/// Runs of letters and digits, in lower case.
+[[nodiscard]] std::vector<std::string> words_in(std::string_view text);
+
 /// What a column of a record seems to hold.
 struct ColumnGuess {
   enum class Role { unknown, time, force, response, other };  ///< other: a count, or a second time
@@ -18,7 +22,8 @@ struct ColumnGuess {
   Role role = Role::unknown;
   std::string from = {};                           ///< what that is guessed from: "its name"; empty of unknown ones
   ResponseKind kind = ResponseKind::acceleration;  ///< of a response
-  char axis = 0;                                   ///< 'x', 'y' or 'z' where the name says it
+  char axis = 0;                                   ///< 'x', 'y' or 'z'
+  bool axis_said = false;                          ///< by its name
   double si_per_unit = 1;  ///< s, N or the SI unit of the kind are so many of what the column holds
   double volts = 0;        ///< a 1 of the column; 0: no voltage
 };
@@ -31,6 +36,9 @@ struct HitGuess {
   std::vector<ColumnGuess> columns = {};  ///< one a column of the record
   std::string force_direction = "x";
   std::string direction_from = {};  ///< what that is guessed from; empty: nothing says it
+  double sample_rate_hz = 0.0;      ///< 0: not known
+  bool rounded_time = false;        ///< the column of time has too few digits to be read: the rate is that of all of it
+  int hits = 1;                     ///< that the force has pulses of, far enough apart
 
   /// Places in `columns` of what has that role.
   [[nodiscard]] std::vector<std::size_t> with(ColumnGuess::Role role) const;
@@ -40,9 +48,9 @@ struct HitGuess {
 
 /// Guesses by the names of columns ("force_n", "Hammer (N)", "acc x [g]"), their units, the name of the file
 /// ("tap_y_2.csv") and, where names say nothing, by the signal: a time rises and never falls, rounded or not, a
-/// hammer's force has the sharpest peak. A force is a hammer's where it is one short pulse, bounces aside; that of a
-/// cut is not. Of responses of several kinds or units, or of one direction twice, the first counts. Of records of
-/// anything else it finds no hit.
+/// hammer's force has the sharpest peak. A force is a hammer's where it is one short pulse, bounces aside, or several
+/// of them as find_hit_segments parts them; that of a cut is not. Of responses of several kinds or units, or of one
+/// direction twice, the first counts. Of records of anything else it finds no hit.
 [[nodiscard]] HitGuess guess_hit(const io::Record& record);
 
 }  // namespace robomill::modal

@@ -1,5 +1,7 @@
 #include "robomill/modal/files/hits_schema.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -66,12 +68,16 @@ Row<HitTable> column_key(const char* name, const char* meaning, F code) {
   return declared<HitTable>(name, Holds::text, meaning).or_also(Holds::integer).read_by(code);
 }
 
-/// Whether one file is enough is for whoever opens it.
-void read_file(TomlFile& file, const std::string& path, HitTable& out) {
-  if (file.has(path + "[0]")) {
-    file.skip(path);
-  } else {
-    file.path(path, out.file);
+void read_files(TomlFile& file, const std::string& path, HitTable& out) {
+  file.paths(path, out.files);
+  if (!file.has(path)) return;
+  if (out.files.empty()) throw file.reject(path, "must name a file");
+  for (std::size_t i = 0; i < out.files.size(); ++i) {
+    if (!out.files[i].has_filename()) throw file.reject(path, "must name a file");
+    if (std::find(out.files.begin(), out.files.begin() + static_cast<std::ptrdiff_t>(i), out.files[i]) !=
+        out.files.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw file.reject(path, "names a file twice", "Force and responses of one file need it once");
+    }
   }
 }
 
@@ -94,8 +100,10 @@ void read_responses(TomlFile& file, const std::string& path, HitTable& out) {
 }
 
 Row<HitTable> responses_key() {
-  Row<HitTable> row =
-      column_key("responses", "column of each direction; -y: the sensor points against the axis", read_responses);
+  Row<HitTable> row = column_key("responses",
+                                 "column of each direction; -y: the sensor points against the axis; of two files a "
+                                 "number counts in the second, \"FILE:COLUMN\" in the one named",
+                                 read_responses);
   row.key.named = true;
   return row.required();
 }
@@ -137,6 +145,9 @@ const Schema<Acquisition>& acquisition_table() {
        key("response_voltage_unit", &Acquisition::response_record_mv, voltage_names,
            "of the responses, if their unit differs from the force's"),
        key("scale", &Acquisition::scale, "unit per full scale of WAV records"),
+       key("hit_spacing_s", &Acquisition::hit_spacing_s,
+           "pulses of a record closer than this are one hit, a double one; later ones are further hits")
+           .above(0.0),
        option(key("accelerometer_mass_kg", &HitOptions::accelerometer_mass_kg, "its effect is removed from the FRFs")
                   .at_least(0.0)
                   .at_most(1.0, "An accelerometer weighs grams; is the value in kg?")),
@@ -174,18 +185,22 @@ const Schema<HitTable>& hit_table() {
   static const Schema<HitTable> table(
       "hit", "a hit and its record",
       {declared<HitTable>("file", Holds::path,
-                          "one record for each hit: .csv .txt .mat .uff .wav; not needed for a tap test's stream")
-           .read_by(read_file),
-       column_key("time", "column's name or number from 1, where it is not found",
+                          "a record: .csv .txt .mat .uff .wav .lvm .tdms; a list of the force's file and the "
+                          "responses' where they are apart; not needed for a tap test's stream",
+                          1)
+           .or_one()
+           .read_by(read_files),
+       column_key("time", "column's name or number from 1, where it is not found; of several files in each that has it",
                   [](TomlFile& file, const std::string& path, HitTable& out) { out.time = read_column(file, path); }),
        column_key(
-           "force", "column's name or number from 1",
+           "force", "column's name or number from 1; of several files a number counts in the first",
            [](TomlFile& file, const std::string& path, HitTable& out) { out.row.force = read_column(file, path); })
            .required(),
        declared<HitTable>("force_direction", Holds::text, "of the hit: x, y or z; -x against the axis; 3x at point 3")
            .required()
            .read_by(read_force_direction),
-       responses_key()});
+       responses_key(), key("split", &HitTable::split, "several hits in one record are cut apart"),
+       key("leave_out", &HitTable::leave_out, "hits of such a record that do not count, from 1")});
   return table;
 }
 

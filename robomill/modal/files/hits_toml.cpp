@@ -16,8 +16,10 @@
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
+#include "robomill/modal/files/hit_files/hit_record.hpp"
 #include "robomill/modal/files/hit_guess.hpp"
 #include "robomill/modal/files/hits_schema.hpp"
+#include "robomill/modal/impact/hit_split.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -29,6 +31,7 @@ struct Sensors {
   double scale = 1.0;  ///< full scale of a WAV
   bool has_scale = false;
   double sample_rate_hz = 0.0;
+  double hit_spacing_s = 0.0;
   bool force_in_volts = false, response_in_volts = false;  ///< the sensitivities are given
 };
 
@@ -107,20 +110,9 @@ HitOptions read_acquisition(io::TomlFile& file, Sensors& sensors) {
   sensors.has_scale = given.scale.has_value();
   sensors.scale = given.scale.value_or(sensors.scale);
   sensors.sample_rate_hz = given.sample_rate_hz;
+  sensors.hit_spacing_s = given.hit_spacing_s;
   file.locate([&] { given.options.validate(); });
   return given.options;
-}
-
-double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz,
-               std::vector<std::string>& notes) {
-  double rate_hz = 0.0;
-  try {
-    rate_hz = io::rate_of(record, given_hz, "acquisition.sample_rate_hz", notes);
-  } catch (const InvalidInput& error) {
-    throw file.reject(key, error.parts().rule);
-  }
-  if (rate_hz > 0.0) return rate_hz;
-  throw file.reject(key, "has no time column, and acquisition.sample_rate_hz is missing");
 }
 
 /// What hits.toml takes a column for.
@@ -144,12 +136,6 @@ ReadAs response_read_as(ResponseKind kind, const Sensors& sensors) {
       break;
   }
   return {io::Quantity::displacement, "m", in_volts, given, response_key(kind)};
-}
-
-/// Whether the file has names and units that its reader did not convert.
-bool has_own_units(const io::Record& record) {
-  const io::Format format = io::format_of(record.file);
-  return format != io::Format::uff && format != io::Format::wav;
 }
 
 /// SI per number of a column whose name, or row of units, states its unit: ax_g, Force [kN]. 1 where none is stated.
@@ -194,50 +180,95 @@ double factor_of_unit(const io::TomlFile& file, const std::string& key, const io
   return si.factor;
 }
 
-Hit read_hit(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sensors& sensors,
-             std::vector<std::string>& notes) {
-  const std::string row = fmt::format("hits[{}].", index);
-  file.require(row + "file");
-  HitTable given;
-  hit_table().read(file, fmt::format("hits[{}]", index), given);
-  const HitRow& columns = given.row;
-  if (file.has(row + "file[0]")) {
-    throw file.reject(row + "file", "must be one file",
-                      "Force and response in two files are not read yet: write them beside each other in one CSV");
+HitRecord open_record(const io::TomlFile& file, const std::string& key, const HitTable& given, const Sensors& sensors) {
+  for (const std::filesystem::path& path : given.files) {
+    if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
+      throw file.reject(key, "is a WAV, and acquisition.scale is missing",
+                        "scale says what full scale means: volts where the sensors' mV per unit are given");
+    }
   }
-  if (io::format_of(given.file) == io::Format::wav && !sensors.has_scale) {
-    throw file.reject(row + "file", "is a WAV, and acquisition.scale is missing",
-                      "scale says what full scale means: volts where the sensors' mV per unit are given");
-  }
-  const io::RecordOptions reading{.time = given.time, .scale = sensors.scale};
-  io::Record record = file.locate([&] { return io::read_record(given.file, reading); });
-  if (!reading.time.empty() && has_own_units(record)) {
-    record.sample_rate_hz /= guess_by_name(record, record.place(reading.time)).si_per_unit;  // of times in ms
-  }
-  notes.insert(notes.end(), record.notes.begin(), record.notes.end());
+  return file.locate([&] {
+    return read_hit_record(given.files, {.time = given.time,
+                                         .scale = sensors.scale,
+                                         .given_rate_hz = sensors.sample_rate_hz,
+                                         .rate_key = "acquisition.sample_rate_hz"});
+  });
+}
 
+/// The columns that a row names, in SI.
+Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, const HitRecord& record,
+           ResponseKind kind, const Sensors& sensors, std::vector<std::string>& notes) {
   Hit hit;
-  hit.file = given.file.string();
+  for (const io::Record& part : record.parts) hit.file += (hit.file.empty() ? "" : " + ") + part.file.string();
   hit.excitation = columns.excitation;
   hit.against_axis = columns.against_axis;
-  hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz, notes);
+  hit.sample_rate_hz = record.sample_rate_hz;
   std::vector<std::string> converted;
-  const auto factor = [&](const std::string& key, const std::string& column, const ReadAs& as) {
-    return has_own_units(record) ? factor_of_unit(file, row + key, record, record.place(column), as, converted) : 1.0;
+  const auto factor = [&](const std::string& key, const HitRecord::Column& column, const ReadAs& as) {
+    return has_own_units(*column.part) ? factor_of_unit(file, row + key, *column.part, column.place, as, converted)
+                                       : 1.0;
   };
-  const double force =
-      factor("force", columns.force, {.in_volts = sensors.force_in_volts, .given_factor = sensors.force_factor});
-  hit.force_n = record.column(columns.force) * sensors.force_factor * force;
+  const HitRecord::Column force = file.locate([&] { return record.column(columns.force, true); });
+  const double force_unit =
+      factor("force", force, {.in_volts = sensors.force_in_volts, .given_factor = sensors.force_factor});
+  hit.force_n = force.samples() * sensors.force_factor * force_unit;
   for (const HitRow::Response& response : columns.responses) {
-    const double unit = factor("responses", response.column, response_read_as(kind, sensors));
+    const HitRecord::Column column = file.locate([&] { return record.column(response.column, false); });
+    const double unit = factor("responses", column, response_read_as(kind, sensors));
     hit.responses.push_back({.dof = response.dof,
-                             .samples = record.column(response.column) * sensors.response_factor * unit,
+                             .samples = column.samples() * sensors.response_factor * unit,
                              .against_axis = response.against_axis});
   }
   for (const std::string& note : converted) {
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   }
   return hit;
+}
+
+/// Without those that the row names. @throws InvalidInput where there is no such hit
+void leave_out(const io::TomlFile& file, const std::string& key, const std::vector<int>& numbers,
+               std::vector<Hit>& hits) {
+  if (numbers.empty()) return;
+  const auto count = static_cast<int>(hits.size());
+  std::vector<Hit> kept;
+  for (const int number : numbers) {
+    if (number < 1 || number > count) {
+      throw file.reject(key, fmt::format("names hit {}, and the record has {}", number, count),
+                        "Hits of a record count from 1");
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    if (std::ranges::find(numbers, i + 1) == numbers.end())
+      kept.push_back(std::move(hits[static_cast<std::size_t>(i)]));
+  }
+  if (kept.empty()) throw file.reject(key, "leaves no hit of the record", "Leave the whole [[hits]] out");
+  hits = std::move(kept);
+}
+
+/// The hits of one row: one, or those that its record holds.
+std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sensors& sensors,
+                          std::vector<std::string>& notes) {
+  const std::string row = fmt::format("hits[{}].", index);
+  file.require(row + "file");
+  HitTable given;
+  hit_table().read(file, fmt::format("hits[{}]", index), given);
+  const HitRecord record = open_record(file, row + "file", given, sensors);
+  std::ranges::copy(record.notes, std::back_inserter(notes));
+  if (!(record.sample_rate_hz > 0.0)) {
+    throw file.reject(row + "file", "has no time column, and acquisition.sample_rate_hz is missing");
+  }
+  Hit whole = hit_of(file, row, given.row, record, kind, sensors, notes);
+  const std::string name = whole.file;
+  std::vector<Hit> hits;
+  if (given.split) {
+    hits = split_hits(std::move(whole), sensors.hit_spacing_s, record.begin_s);
+  } else {
+    hits.push_back(std::move(whole));
+  }
+  if (hits.size() > 1)
+    notes.push_back(fmt::format("{}: {} hits, cut apart by the pulses of the force", name, hits.size()));
+  leave_out(file, row + "leave_out", given.leave_out, hits);
+  return hits;
 }
 
 /// What is taken where the file does not say it.
@@ -288,7 +319,7 @@ HitsFile read_hits(const io::TomlSource& source) {
   out.options = read_acquisition(file, sensors);
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i)
-    out.hits.push_back(read_hit(file, i, out.options.response, sensors, out.notes));
+    std::ranges::move(read_row(file, i, out.options.response, sensors, out.notes), std::back_inserter(out.hits));
   std::ranges::move(file.done(), std::back_inserter(out.notes));
   out.assumed = assumed_of(file, out.options.response, source.path);
   add_assumed(out.assumed, io::sample_values(file));

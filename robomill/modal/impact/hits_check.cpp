@@ -184,6 +184,10 @@ HitVerdict judge_hit(const Hit& hit, const Pulse& pulse, const HitOptions& optio
   verdict.peak_force_n = pulse.peak_n;
   verdict.pulse_width_s = pulse.width / hit.sample_rate_hz;
   verdict.second_pulse_ratio = pulse.second_ratio;
+  if (!hit.fault.empty()) {
+    verdict.reasons.push_back(hit.fault);
+    return verdict;
+  }
   judge_pulse(hit, pulse, options, verdict.reasons);
   judge_overload(hit, options, verdict.reasons);
   verdict.accepted = verdict.reasons.empty();

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <set>
 #include <system_error>
 
 #include "robomill/base/error.hpp"
@@ -56,10 +58,30 @@ std::string row_of(const std::vector<TapColumn>& columns, const std::string& dir
   return out + " }\n";
 }
 
+/// Of a hit out of a stream.
 fs::path record_path(const fs::path& document, const TapHit& taken, std::size_t number) {
-  if (!taken.file.empty()) return taken.file;
   return document.parent_path() /
          fmt::format("{}_{}_{}.csv", document.stem().string(), to_string(taken.hit->excitation), number);
+}
+
+/// "\"hit.csv\"", or a list, relative to the document.
+std::string file_value(const fs::path& document, const std::vector<fs::path>& files) {
+  std::string list;
+  for (const fs::path& file : files) {
+    const std::string name = file.lexically_relative(document.parent_path()).generic_string();
+    list += (list.empty() ? "" : ", ") + io::toml_quoted(name);
+  }
+  return files.size() == 1 ? list : fmt::format("[{}]", list);
+}
+
+/// Hits of a record that were not accepted.
+std::string left_out(const TapDocument& document, const TapHit& first) {
+  std::string numbers;
+  for (std::size_t i = 1; i <= first.of; ++i) {
+    const auto is_it = [&](const auto& one) { return one.second.files == first.files && one.second.number == i; };
+    if (std::ranges::none_of(document.hits, is_it)) numbers += fmt::format("{}{}", numbers.empty() ? "" : ", ", i);
+  }
+  return numbers.empty() ? std::string() : fmt::format("leave_out = [{}]\n", numbers);
 }
 
 bool is_there(const fs::path& path) {
@@ -72,7 +94,7 @@ bool is_there(const fs::path& path) {
 TapWritten write_tap_hits(const fs::path& path, const TapDocument& document, bool replace) {
   TapWritten out;
   for (const auto& [number, taken] : document.hits) {
-    if (taken.file.empty()) out.files.push_back(record_path(path, taken, number));
+    if (taken.files.empty()) out.files.push_back(record_path(path, taken, number));
   }
   out.files.push_back(path);
   for (const fs::path& file : out.files) {
@@ -80,16 +102,19 @@ TapWritten write_tap_hits(const fs::path& path, const TapDocument& document, boo
   }
   io::make_folder(path.parent_path());
   std::string text = document.acquisition;
+  std::set<std::vector<fs::path>> written;
   for (const auto& [number, taken] : document.hits) {
-    const fs::path record = record_path(path, taken, number);
-    std::string row = taken.row;
-    if (taken.file.empty()) {
-      const std::vector<TapColumn> columns = columns_of(*taken.hit, document.response);
-      io::write_file(record, csv_of(columns));
-      row = row_of(columns, taken.direction);
+    if (!taken.files.empty()) {
+      // A row is of all hits of its record.
+      if (!written.insert(taken.files).second) continue;
+      text += fmt::format("\n[[hits]]\nfile = {}\n{}{}", file_value(path, taken.files), taken.row,
+                          left_out(document, taken));
+      continue;
     }
-    const std::string name = record.lexically_relative(path.parent_path()).generic_string();
-    text += fmt::format("\n[[hits]]\nfile = {}\n{}", io::toml_quoted(name), row);
+    const fs::path record = record_path(path, taken, number);
+    const std::vector<TapColumn> columns = columns_of(*taken.hit, document.response);
+    io::write_file(record, csv_of(columns));
+    text += fmt::format("\n[[hits]]\nfile = {}\n{}", file_value(path, {record}), row_of(columns, taken.direction));
   }
   io::write_file(path, text);
   return out;

@@ -236,7 +236,7 @@ TEST_F(JobVerbs, RequestsAreCheckedBeforeTheyWait) {
   };
   EXPECT_NE(no({{"verb", "rm"}, {"input", "a"}}).find("verb: must be one of \"plan\", \"frf\""), std::string::npos);
   EXPECT_EQ(no({{"verb", "frf"}, {"input", Json::array()}}), "input: must be a path or a list of paths");
-  EXPECT_EQ(no({{"verb", "frf"}, {"input", {"a", "b"}}}), "input: frf takes one file");
+  EXPECT_EQ(no({{"verb", "lobes"}, {"input", {"a", "b"}}}), "input: lobes takes one file");
   EXPECT_NE(no({{"verb", "frf"}, {"input", "../hits.toml"}}).find("must not lead upwards"), std::string::npos);
   EXPECT_NE(no({{"verb", "frf"}, {"input", "a"}, {"output", "../b.uff"}}).find("upwards"), std::string::npos);
   EXPECT_NE(no({{"verb", "frf"}, {"input", "a"}, {"output", "b.doc"}}).find("FRFs are written as"), std::string::npos);

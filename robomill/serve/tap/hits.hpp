@@ -18,9 +18,10 @@ namespace robomill::serve {
 
 /// A hit that was taken.
 struct TapHit {
-  std::string name = {};                        ///< its file's, or "hit 3"
-  std::string direction = {};                   ///< "-y"
-  std::filesystem::path file = {};              ///< empty: out of a stream
+  std::string name = {};                          ///< its file's, or "hit 3"
+  std::string direction = {};                     ///< "-y"
+  std::vector<std::filesystem::path> files = {};  ///< of its record; empty: out of a stream
+  std::size_t number = 1, of = 1;                 ///< among the hits of that record
   std::string row = {};                         ///< its keys in hits.toml but the file, as TOML; empty: out of a stream
   std::shared_ptr<const modal::Hit> hit = {};   ///< none: it is of no use
   std::vector<std::string> reasons = {};        ///< why it was rejected

@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/modal/files/hit_files/hit_sets.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -101,19 +102,51 @@ void TapSession::run(const std::stop_token& stop) {
 
 /// True where there was something.
 bool TapSession::take_files() {
-  const std::vector<std::filesystem::path> found = folder_->look(TapHits::most_hits - hits_.size());
-  for (const std::filesystem::path& record : found) {
-    TapHit taken = {.name = record.filename().string(), .file = record, .row = settings_.row(record)};
-    try {
-      modal::Hit hit = settings_.read(record);
-      hit.file = taken.name;
-      taken.direction = direction_text(hit.excitation, hit.against_axis);
-      hits_.add(taken, hit);
-    } catch (const std::exception& error) {
-      hits_.add(std::move(taken), rejection_reason(error, options_.root));
-    }
+  bool any = false;
+  for (const std::filesystem::path& file : folder_->look(TapHits::most_hits - hits_.size())) {
+    any = take_record(file) || any;
   }
-  return !found.empty();
+  return any;
+}
+
+/// A file alone, or the last one of a record that has several. True: what is shown has changed
+bool TapSession::take_record(const std::filesystem::path& file) {
+  if (settings_.files_of(file) < 2) {
+    add_hits({file});
+    return true;
+  }
+  const std::string key = (file.parent_path() / modal::set_key(file)).lexically_normal().string();
+  std::vector<std::filesystem::path>& set = waiting_[key];
+  set.push_back(file);
+  if (set.size() == settings_.files_of(file)) {
+    add_hits(settings_.in_order(std::move(set)));
+    waiting_.erase(key);
+  }
+  return true;
+}
+
+/// The hits of a record, as many as the test may still take.
+void TapSession::add_hits(const std::vector<std::filesystem::path>& files) {
+  std::string name;
+  for (const std::filesystem::path& file : files) name += (name.empty() ? "" : " + ") + file.filename().string();
+  const TapHit record = {.name = name, .files = files, .row = settings_.row(files.front())};
+  try {
+    const std::vector<modal::Hit> hits = settings_.read(files);
+    if (hits.size() > TapHits::most_hits - hits_.size()) {
+      throw InvalidInput(name, fmt::format("holds {} hits, and the test has {} of the {} that it may", hits.size(),
+                                           hits_.size(), TapHits::most_hits));
+    }
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      TapHit taken = record;
+      taken.name = hits[i].file;
+      taken.number = i + 1;
+      taken.of = hits.size();
+      taken.direction = direction_text(hits[i].excitation, hits[i].against_axis);
+      hits_.add(std::move(taken), hits[i]);
+    }
+  } catch (const std::exception& error) {
+    hits_.add(record, rejection_reason(error, options_.root));
+  }
 }
 
 bool TapSession::take_records() {
@@ -137,6 +170,11 @@ bool TapSession::take_records() {
 void TapSession::update() {
   hits_.average();
   io::Json state = hits_.state();
+  io::Json waiting = io::Json::array();
+  for (const auto& [key, files] : waiting_) {
+    for (const std::filesystem::path& file : files) waiting.push_back(printable(file.filename().string()));
+  }
+  state["waiting"] = std::move(waiting);
   const std::lock_guard lock(mutex_);
   state_ = std::move(state);
   ++revision_;

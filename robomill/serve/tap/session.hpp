@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <stop_token>
@@ -56,7 +57,8 @@ class TapSession {
   TapSession(const TapSession&) = delete;
   TapSession& operator=(const TapSession&) = delete;
 
-  /// {"id", "revision", "hits", "stream", "force_direction", "running", "good", "wanted", "taken", "frf", "peaks"}
+  /// {"id", "revision", "hits", "stream", "force_direction", "running", "good", "wanted", "waiting", "taken", "frf",
+  /// "peaks"}
   [[nodiscard]] std::string state() const;
   /// Of one hit, from 1: TapHits::about.
   [[nodiscard]] io::Json about(std::size_t number) const { return hits_.about(number); }
@@ -72,6 +74,8 @@ class TapSession {
  private:
   void run(const std::stop_token& stop);
   [[nodiscard]] bool take_files();
+  [[nodiscard]] bool take_record(const std::filesystem::path& file);
+  void add_hits(const std::vector<std::filesystem::path>& files);
   [[nodiscard]] bool take_records();
   void send(std::string_view event, const std::string& data);
   void update();
@@ -84,6 +88,8 @@ class TapSession {
   bool ended_ = false;  ///< under it
   TapHits hits_;
   std::unique_ptr<TapFolder> folder_;  ///< not of a stream
+  /// Files whose record has others that have not appeared yet, by folder and what their names have in common.
+  std::map<std::string, std::vector<std::filesystem::path>> waiting_;
   mutable std::mutex mutex_;
   std::condition_variable_any woken_;
   bool due_ = false, changed_by_hand_ = false;

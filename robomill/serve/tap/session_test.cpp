@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "robomill/modal/files/hits_toml.hpp"
 #include "testing/serve/hammer.hpp"
 #include "testing/support.hpp"
 
@@ -111,6 +112,75 @@ TEST(TapSession, GoesOnAfterAnError) {
   EXPECT_EQ(wait_for(session, 1)["good"], 1);
   test::appear(folder, "x_2.csv", hit_csv(90.0, false, 3));
   EXPECT_EQ(wait_for(session, 2)["good"], 2);
+}
+
+/// What was taken, by name.
+std::vector<std::string> names_of(const json& state) {
+  std::vector<std::string> out;
+  for (const json& taken : state["taken"]) out.push_back(taken["file"]);
+  return out;
+}
+
+// A record may hold several hits. A saved document names it once, without those that were excluded.
+TEST(TapSession, TakesEveryHitOfARecord) {
+  const test::Folder folder;
+  TapSession session(
+      {.hits = folder.at("hits.toml"), .text = hits, .name = "hits.toml", .watch = folder.path(), .wanted = 0},
+      [](std::string_view, std::string_view) {});
+  const std::vector<test::Push> pushes = {{.at_s = 0.1, .peak_n = 100.0},
+                                          {.at_s = 1.1, .peak_n = 80.0},
+                                          {.at_s = 2.1, .peak_n = 120.0},
+                                          {.at_s = 3.1, .peak_n = 90.0}};
+  test::appear(folder, "x_1.csv", test::HammerRecord(4 * 8192, pushes, 7).csv());
+  const json state = wait_for(session, 4);
+  EXPECT_EQ(state["good"], 4) << state["taken"];
+  EXPECT_EQ(names_of(state)[2], "x_1.csv, hit 3 of 4 at 2.10 s");
+  ASSERT_TRUE(session.set_accepted(2, false));
+  static_cast<void>(session.save(folder.at("saved.toml"), false));
+  const modal::HitsFile saved = modal::read_hits(folder.at("saved.toml"));
+  ASSERT_EQ(saved.hits.size(), 3U);
+  EXPECT_EQ(saved.hits[1].file, folder.at("x_1.csv").string() + ", hit 3 of 4 at 2.10 s");
+}
+
+// Force and responses apart: the first file waits for the other one, whichever comes first.
+TEST(TapSession, WaitsForTheOtherFileOfARecord) {
+  const test::Folder folder;
+  constexpr const char* apart = R"([acquisition]
+max_frequency_hz = 1000
+[[hits]]
+file = ["force_x_1.csv", "acc_x_1.csv"]
+force = "force_n"
+force_direction = "x"
+responses = { x = "ax_m_per_s2" }
+)";
+  TapSession session(
+      {.hits = folder.at("hits.toml"), .text = apart, .name = "hits.toml", .watch = folder.path(), .wanted = 0},
+      [](std::string_view, std::string_view) {});
+  const auto column = [](const std::string& name, const std::vector<double>& values) {
+    std::string text = "time_s," + name + "\n";
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      text +=
+          std::to_string(static_cast<double>(i) / test::HammerRecord::rate_hz) + "," + std::to_string(values[i]) + "\n";
+    }
+    return text;
+  };
+  for (const std::string number : {"1", "2"}) {
+    const test::HammerRecord record(8192, {{.at_s = 0.1, .peak_n = 100.0}}, number == "1" ? 3 : 4);
+    test::appear(folder, "acc_x_" + number + ".csv", column("ax_m_per_s2", record.ax_m_per_s2));
+    const auto waits = [&] { return json::parse(session.state())["waiting"]; };
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (waits().empty() && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_EQ(waits(), json::array({"acc_x_" + number + ".csv"}));
+    test::appear(folder, "force_x_" + number + ".csv", column("force_n", record.force_n));
+    const json state = wait_for(session, number == "1" ? 1 : 2);
+    EXPECT_EQ(names_of(state).back(), "force_x_" + number + ".csv + acc_x_" + number + ".csv");
+    EXPECT_TRUE(state["waiting"].empty());
+  }
+  EXPECT_EQ(json::parse(session.state())["good"], 2);
+  static_cast<void>(session.save(folder.at("saved.toml"), false));
+  EXPECT_EQ(modal::read_hits(folder.at("saved.toml")).hits.size(), 2U);
 }
 
 TEST(TapSession, SettingsMustBeHits) {

@@ -16,6 +16,7 @@
 #include "robomill/io/toml/edit.hpp"
 #include "robomill/io/toml/values.hpp"
 #include "robomill/io/toml_source.hpp"
+#include "robomill/modal/files/hit_files/hit_sets.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -100,11 +101,15 @@ void TapSettings::read_rows(const std::string& text) {
       named_.resize(row + 1);
     }
     const std::string key = value.key.substr(value.key.find("].") + 2);
-    if (key == "file" && value.value.is_string()) {
-      named_[row] = path_.parent_path() / value.value.get<std::string>();
-      io::require_inside(named_[row]);  // even whether it is there is nobody's business
+    if (key == "file") {
+      for (const io::Json& file : value.value.is_array() ? value.value : io::Json::array({value.value})) {
+        if (!file.is_string()) continue;  // read_hit_rows says so
+        named_[row].push_back(path_.parent_path() / file.get<std::string>());
+        io::require_inside(named_[row].back());  // even whether it is there is nobody's business
+      }
       continue;
     }
+    if (key == "leave_out") continue;  // of the record that the row names, and of no other
     if (key == "force_direction" && value.value.is_string())
       excitation_directions_[row] = value.value.get<std::string>();
     rows_[row] += fmt::format("{} = {}\n", key, toml_text(value.value));
@@ -132,7 +137,10 @@ std::string TapSettings::acquisition(bool si) const {
 
 std::size_t TapSettings::row_of(const std::filesystem::path& record) const {
   for (std::size_t i = 0; i < named_.size(); ++i) {
-    if (named_[i].lexically_normal() == record.lexically_normal()) return i;
+    const auto is_it = [&](const std::filesystem::path& file) {
+      return file.lexically_normal() == record.lexically_normal();
+    };
+    if (std::ranges::any_of(named_[i], is_it)) return i;
   }
   const std::string name = record.stem().string();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -141,10 +149,36 @@ std::size_t TapSettings::row_of(const std::filesystem::path& record) const {
   return 0;
 }
 
-modal::Hit TapSettings::read(const std::filesystem::path& record) const {
-  const std::string text =
-      fmt::format("{}\n[[hits]]\nfile = {}\n{}", acquisition(false), io::toml_quoted(record.string()), row(record));
-  return std::move(modal::read_hits(io::TomlSource(path_, text)).hits.front());
+std::vector<modal::Hit> TapSettings::read(const std::vector<std::filesystem::path>& files) const {
+  std::string list, whole, names;
+  for (const std::filesystem::path& file : files) {
+    list += (list.empty() ? "" : ", ") + io::toml_quoted(file.string());
+    whole += (whole.empty() ? "" : " + ") + file.string();
+    names += (names.empty() ? "" : " + ") + file.filename().string();
+  }
+  const std::string text = fmt::format("{}\n[[hits]]\nfile = [{}]\n{}", acquisition(false), list, row(files.front()));
+  std::vector<modal::Hit> hits = modal::read_hits(io::TomlSource(path_, text)).hits;
+  for (modal::Hit& hit : hits) hit.file = names + hit.file.substr(std::min(whole.size(), hit.file.size()));
+  return hits;
+}
+
+std::vector<std::filesystem::path> TapSettings::in_order(std::vector<std::filesystem::path> files) const {
+  const std::vector<std::filesystem::path>& named = named_[row_of(files.front())];
+  const auto place = [&](const std::filesystem::path& file) {
+    const auto same = [&](const std::filesystem::path& one) {
+      return one.lexically_normal() == file.lexically_normal();
+    };
+    return std::ranges::find_if(named, same) - named.begin();
+  };
+  std::ranges::stable_partition(files, modal::is_named_force);
+  std::ranges::stable_sort(files, {}, place);
+  return files;
+}
+
+std::vector<std::filesystem::path> TapSettings::named() const {
+  std::vector<std::filesystem::path> out;
+  for (const std::vector<std::filesystem::path>& files : named_) out.insert(out.end(), files.begin(), files.end());
+  return out;
 }
 
 std::string TapSettings::first_direction() const {

@@ -20,14 +20,21 @@ class TapSettings {
   /// folder that is served
   TapSettings(std::filesystem::path hits, const std::string& text);
 
-  /// The hit of one record, by the row that names it; else by the first whose direction stands in its name as a word
-  /// ("x" in "tap_x_3.csv"), or by the first of all.
+  /// The hits of one record, named without its folder, by the row that names it; else by the first whose direction
+  /// stands in its name as a word ("x" in "tap_x_3.csv"), or by the first of all.
+  /// @param files  as many as the row has, in its order
   /// @throws InvalidInput as modal::read_hits
-  [[nodiscard]] modal::Hit read(const std::filesystem::path& record) const;
+  [[nodiscard]] std::vector<modal::Hit> read(const std::vector<std::filesystem::path>& files) const;
+  /// How many files a record has by its row: force and responses may be apart.
+  [[nodiscard]] std::size_t files_of(const std::filesystem::path& record) const {
+    return named_[row_of(record)].size();
+  }
+  /// Files of one record in the order of their row: as it names them, else the one named as a force first.
+  [[nodiscard]] std::vector<std::filesystem::path> in_order(std::vector<std::filesystem::path> files) const;
   /// The row that it is read by, but its file, as TOML.
   [[nodiscard]] const std::string& row(const std::filesystem::path& record) const { return rows_[row_of(record)]; }
-  /// Records that the rows name, resolved.
-  [[nodiscard]] const std::vector<std::filesystem::path>& named() const { return named_; }
+  /// Files that the rows name, resolved.
+  [[nodiscard]] std::vector<std::filesystem::path> named() const;
   /// How many the rows have.
   [[nodiscard]] std::size_t directions() const { return directions_; }
   [[nodiscard]] const modal::HitOptions& options() const { return columns_.options; }
@@ -58,8 +65,8 @@ class TapSettings {
   std::filesystem::path path_;
   std::vector<Setting> acquisition_;  ///< as TOML
   std::vector<std::string> rows_,
-      excitation_directions_;                 ///< the keys of each row but its file, as TOML; its direction
-  std::vector<std::filesystem::path> named_;  ///< one a row
+      excitation_directions_;  ///< the keys of each row but its file, as TOML; its direction
+  std::vector<std::vector<std::filesystem::path>> named_;  ///< files of each row
   std::size_t directions_ = 0;
   modal::HitRows columns_;
   std::vector<std::string> channels_;

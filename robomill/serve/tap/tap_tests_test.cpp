@@ -289,7 +289,7 @@ TEST_F(TapTestsTest, SavesWhatRobomillFrfReads) {
   EXPECT_EQ(files, (json{"tapped/hits_x_1.csv", "tapped/hits_x_4.csv", "tapped/hits_y_5.csv", "tapped/hits_y_6.csv",
                          "tapped/hits.toml"}));
   ask("POST", "/api/tap/save", {{"path", "tip.json"}});
-  const jobs::FrfJobResult read = jobs::run_frf(place_.at("tapped/hits.toml"));
+  const jobs::FrfJobResult read = jobs::run_frf({place_.at("tapped/hits.toml")});
   EXPECT_EQ(read.file.hits.size(), 4u);
   EXPECT_TRUE(read.file.hits[3].against_axis);
   expect_same(read.frfs.set, modal::read_frfs({place_.at("tip.json")}).set);
@@ -326,7 +326,7 @@ TEST_F(TapTestsTest, SavesAFoldersHits) {
   ask("POST", "/api/tap/save", {{"path", "tip.csv"}});
   ask("POST", "/api/tap/save", {{"path", "saved/hits.toml"}});
   ask("POST", "/api/tap/save", {{"path", "tip.json"}});
-  expect_same(jobs::run_frf(place_.at("saved/hits.toml")).frfs.set, modal::read_frfs({place_.at("tip.json")}).set);
+  expect_same(jobs::run_frf({place_.at("saved/hits.toml")}).frfs.set, modal::read_frfs({place_.at("tip.json")}).set);
   test::appear(place_, "x_3.csv", HammerRecord(8192, {{.at_s = 0.05, .peak_n = 50.0}}, ++seed_).csv());
   const json state = wait_for_hits(3);
   EXPECT_EQ(state["taken"].size(), 3u);

@@ -208,6 +208,7 @@ export interface Tap {
   running: boolean;
   good: number;
   wanted: number;
+  waiting?: string[]; // files whose record has another one, that has not appeared yet
   taken: TapHit[];
   frf: FrfDocument | null;
   peaks: TapPeak[];

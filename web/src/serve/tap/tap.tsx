@@ -102,6 +102,7 @@ export function TapShown({ tap, wrote }: { tap: Tap; wrote: (accepted: string) =
     <>
       <Panel heading={countText(tap)} name="tap-count">
         <progress max={tap.wanted} value={Math.min(tap.good, tap.wanted)} aria-label="Good hits" />
+        {tap.waiting && tap.waiting.length > 0 && <span class="quiet">waiting for the other file of {tap.waiting.join(', ')}</span>}
         <div role="status" aria-live="polite">
           <Newest hit={newest} streams={tap.stream !== null} />
         </div>

@@ -1,0 +1,192 @@
+#include "robomill/io/joined_records.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
+
+namespace robomill::io {
+namespace {
+
+using Eigen::Index;
+
+/// Where a record lies in time, and how well it says so.
+struct Extent {
+  double rate_hz = 0.0;                ///< 0: not said
+  double rate_error = 0.0;             ///< relative
+  std::optional<double> begin_s = {};  ///< of a column of time
+  double begin_error_s = 0.0;
+  Index samples = 0;
+};
+
+std::string file_name(const Record& record) {
+  return record.file.filename().string();
+}
+
+Extent extent_of(const Record& record, const std::string& given_time) {
+  constexpr double smallest_error = 1e-5;  // as of hits that are averaged
+  Extent out{.rate_hz = record.sample_rate_hz,
+             .rate_error = std::max(record.rate_error, smallest_error),
+             .samples = record.columns.front().size()};
+  const std::string name = time_column_of(record, given_time);
+  if (name.empty() || out.samples < 3) return out;
+  const Eigen::VectorXd& time_s = record.column(name);
+  if (time_s.size() != out.samples) return out;
+  const double span_s = time_s(out.samples - 1) - time_s(0);
+  if (!(span_s > 0.0)) return out;
+  // Of times with few digits those at the begin are the best, and the line through all gives the rate.
+  const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(out.samples, time_s(0), time_s(out.samples - 1));
+  const double off_s = (time_s - line).cwiseAbs().maxCoeff();
+  out.rate_error = std::max(out.rate_error, 2.0 * off_s / span_s);
+  out.begin_s = time_s(0);
+  out.begin_error_s = off_s;
+  return out;
+}
+
+void require_one_rate(const std::vector<Record>& parts, const std::vector<Extent>& extents) {
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Extent &a = extents[j], &b = extents[i];
+      if (!(a.rate_hz > 0.0 && b.rate_hz > 0.0)) continue;
+      if (std::abs(b.rate_hz / a.rate_hz - 1.0) <= a.rate_error + b.rate_error) continue;
+      throw InvalidInput(
+          parts[i].file.string(),
+          fmt::format("was sampled at {:.6g} Hz, and {} at {:.6g} Hz", b.rate_hz, file_name(parts[j]), a.rate_hz),
+          "Force and responses of one hit are recorded together, at one rate; do the files belong "
+          "together?");
+    }
+  }
+}
+
+/// The rate that is known best; its place.
+std::optional<std::size_t> best_rate(const std::vector<Extent>& extents) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (extents[i].rate_hz > 0.0 && (!best || extents[i].rate_error < extents[*best].rate_error)) best = i;
+  }
+  return best;
+}
+
+/// One that says no rate goes with another by its length alone.
+void take_rate(const std::vector<Record>& parts, const std::vector<Extent>& extents, std::size_t best,
+               JoinedRecords& out) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (extents[i].rate_hz > 0.0) continue;
+    if (extents[i].samples != extents[best].samples) {
+      throw InvalidInput(parts[i].file.string(),
+                         fmt::format("states no sample rate and has {} samples, where {} has {}", extents[i].samples,
+                                     file_name(parts[best]), extents[best].samples),
+                         "Nothing says that they belong together: give the rate, or write a column of time");
+    }
+    out.notes.push_back(fmt::format("{} states no sample rate: it has that of {}, which is as long",
+                                    file_name(parts[i]), file_name(parts[best])));
+  }
+}
+
+/// How many samples each begins before the last one to begin.
+std::vector<Index> lags_of(const std::vector<Record>& parts, const std::vector<Extent>& extents, JoinedRecords& out) {
+  constexpr double most_beside = 0.05;  // samples
+  std::vector<Index> lags(parts.size(), 0);
+  if (!std::ranges::all_of(extents, [](const Extent& extent) { return extent.begin_s.has_value(); })) {
+    std::string names;
+    for (const Record& part : parts) names += (names.empty() ? "" : ", ") + file_name(part);
+    out.notes.push_back(names + " are taken to begin at the same time: not all of them have a column of time");
+    return lags;
+  }
+  const auto later = [](const Extent& a, const Extent& b) { return *a.begin_s < *b.begin_s; };
+  const auto last = static_cast<std::size_t>(std::ranges::max_element(extents, later) - extents.begin());
+  out.begin_s = *extents[last].begin_s;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double lag = (out.begin_s - *extents[i].begin_s) * out.sample_rate_hz;
+    const double whole = std::min(std::round(lag), static_cast<double>(extents[i].samples));
+    lags[i] = static_cast<Index>(whole);
+    const double error = (extents[i].begin_error_s + extents[last].begin_error_s) * out.sample_rate_hz;
+    if (lags[i] > 0) {
+      out.notes.push_back(fmt::format("{} begins {:.6g} s before {}: that part is left out", file_name(parts[i]),
+                                      lag / out.sample_rate_hz, file_name(parts[last])));
+    }
+    if (std::abs(lag - whole) > most_beside + error) {
+      out.notes.push_back(fmt::format("{}{} was sampled {:.2f} of a sample beside {}: phases are off by {:.2g}° a kHz",
+                                      warning_label, file_name(parts[i]), std::abs(lag - whole), file_name(parts[last]),
+                                      360e3 * std::abs(lag - whole) / out.sample_rate_hz));
+    }
+  }
+  return lags;
+}
+
+void cut(std::vector<Record>& parts, const std::vector<Index>& lags, JoinedRecords& out) {
+  Index length = parts.front().columns.front().size() - lags.front(), longest = length;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const Index left = parts[i].columns.front().size() - lags[i];
+    length = std::min(length, left);
+    longest = std::max(longest, left);
+  }
+  if (length < 1) {
+    throw InvalidInput(parts.front().file.string(),
+                       fmt::format("has no time in common with {}", file_name(parts.back())),
+                       "Do the files belong together, and are their times of one clock?");
+  }
+  if (length < longest) {
+    std::string lengths;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      lengths +=
+          fmt::format("{}{} in {}", i == 0 ? "" : ", ", parts[i].columns.front().size() - lags[i], file_name(parts[i]));
+    }
+    out.notes.push_back(fmt::format("of the samples ({}) those count that all files have, {}", lengths, length));
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (Eigen::VectorXd& column : parts[i].columns) {
+      if (lags[i] == 0 && column.size() == length) continue;
+      column = Eigen::VectorXd(column.segment(lags[i], length));
+    }
+  }
+}
+
+}  // namespace
+
+std::string time_column_of(const Record& record, const std::string& given) {
+  if (given.empty()) {
+    const auto known = std::ranges::find_if(record.names, is_time_column);
+    return known == record.names.end() ? std::string() : *known;
+  }
+  try {
+    static_cast<void>(record.place(given));
+    return given;
+  } catch (const InvalidInput&) {
+    return {};  // another file has it
+  }
+}
+
+JoinedRecords join_records(std::vector<Record> parts, std::vector<std::string> times) {
+  times.resize(parts.size());
+  JoinedRecords out;
+  for (const Record& part : parts) {
+    for (const Eigen::VectorXd& column : part.columns) {
+      if (column.size() == part.columns.front().size() || parts.size() == 1) continue;
+      throw InvalidInput(part.file.string(), "has columns of several lengths", "It does not go with another file then");
+    }
+  }
+  std::vector<Extent> extents;
+  extents.reserve(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) extents.push_back(extent_of(parts[i], times[i]));
+  require_one_rate(parts, extents);
+  const std::optional<std::size_t> best = best_rate(extents);
+  if (best) out.sample_rate_hz = extents[*best].rate_hz;
+  if (parts.size() == 1) {
+    out.begin_s = extents.front().begin_s.value_or(0.0);
+  } else {
+    if (best) take_rate(parts, extents, *best, out);
+    cut(parts, lags_of(parts, extents, out), out);
+  }
+  out.parts = std::move(parts);
+  return out;
+}
+
+}  // namespace robomill::io
