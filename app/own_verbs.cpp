@@ -46,7 +46,7 @@ Verb init_verb() {
 
 std::vector<VerbOption> monitor_options() {
   return {plain_option("input",
-                       "a recording (.wav .csv .txt .mat .uff .lvm .tdms), - for standard input, or "
+                       "a recording (.wav .csv .txt .mat .uff .h5 .npy .npz .lvm .tdms), - for standard input, or "
                        "mqtt://HOST:PORT/TOPIC (mqtts:// with TLS); default: mqtt.topic of monitor.toml"),
           word_option("format", "of standard input, or of a file whatever its ending (default: auto)",
                       {"auto", "f32", "i16", "csv"}),

@@ -19,9 +19,11 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records/labview/lvm.hpp"
+#include "robomill/io/records/record_formats.hpp"
 #include "robomill/io/records/records.hpp"
-#include "robomill/io/records/sample_alignment.hpp"
-#include "robomill/io/records/sample_parts.hpp"
+#include "robomill/io/records/samples/sample_alignment.hpp"
+#include "robomill/io/records/samples/sample_parts.hpp"
+#include "robomill/io/records/text/maker_text.hpp"
 #include "robomill/io/system/confinement.hpp"
 
 namespace robomill::io {
@@ -282,24 +284,20 @@ std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path, co
                                            RawFormat format, const std::atomic<bool>* stop) {
   columns.validate();
   if (format == RawFormat::automatic) {
-    switch (format_of(path)) {
-      case Format::wav:
+    switch (record_format_of(path)) {
+      case RecordFormat::wav:
         return wav_source(path, columns);
-      case Format::mat:
-      case Format::uff:
-      case Format::tdms:
-        return record_source(path, columns);
-      case Format::csv:
-      case Format::text:
-      case Format::lvm:  // without headers it is a table
-        if (is_lvm(path)) return record_source(path, columns);
+      case RecordFormat::text:
+      case RecordFormat::lvm:  // without headers it is a table
+        if (is_lvm(path) || text_maker_of(path) != TextMaker::none) return record_source(path, columns);
         format = RawFormat::csv;
         break;
-      default:
+      case RecordFormat::none:
         (void)open_file(path);
-        throw InvalidInput(
-            path.string(), "is no recording by its ending",
-            "Recordings are .wav, .csv, .txt, .mat, .uff, .lvm and .tdms; others need --format f32, i16 or csv");
+        throw InvalidInput(path.string(), "is no recording by its ending",
+                           fmt::format("Recordings are {}; others need --format f32, i16 or csv", record_endings()));
+      default:
+        return record_source(path, columns);
     }
   }
   std::error_code ignored;

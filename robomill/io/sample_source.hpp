@@ -46,7 +46,7 @@ struct SampleBlock {
 };
 
 /// A recording read from its begin to its end. WAV, text and raw samples take the same memory whatever their length;
-/// MAT, UFF, LVM and TDMS are held whole.
+/// the others are held whole.
 class ROBOMILL_API SampleSource {
  public:
   SampleSource() = default;
@@ -75,7 +75,8 @@ class ROBOMILL_API SampleSource {
   std::uint64_t unreadable_rows_ = 0, first_unreadable_line_ = 0, misaligned_frames_ = 0;
 };
 
-/// A file by its ending (.wav; .csv .txt .dat .asc; .mat; .uff .unv .uf; .lvm; .tdms), or as `format` says.
+/// A file by its ending (.csv .txt .dat .asc .uff .unv .uf .mat .h5 .hdf5 .hdf .npy .npz .lvm .tdms .wav), or as
+/// `format` says.
 ///
 /// Text: as parse_table reads it, but one column may be followed, empty fields and "nan" are NaN, and rows that cannot
 /// be read are frames of NaN that are counted. Names of channels stand for columns in their order where the recording

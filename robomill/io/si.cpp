@@ -70,7 +70,7 @@ std::string plain(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte == 0xC2) continue;  // leads ² and µ in UTF-8
+    if (byte == 0xC2 || byte == 0xB7) continue;  // the first leads ², µ and · in UTF-8; the second is ·
     if (byte == 0xCE && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) == 0xBC) {
       out += 'u';  // the Greek letter
       ++i;
@@ -164,7 +164,9 @@ std::string unit_of_column(std::string_view name) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
     const std::size_t begin = name.rfind(open), end = name.rfind(close);
     if (begin != std::string_view::npos && end != std::string_view::npos && begin < end) {
-      return std::string(trimmed(name.substr(begin + 1, end - begin - 1)));
+      const std::string_view within = trimmed(name.substr(begin + 1, end - begin - 1));
+      const bool is_place = within.find_first_not_of("0123456789:, ") == std::string_view::npos;  // x(:,1), s(2).y
+      if (!is_place) return std::string(within);
     }
   }
   if (std::string unit = unit_of_key(lowered(name)); !unit.empty()) return unit;

@@ -45,5 +45,14 @@ TEST(Si, TakesTheUnitBeforeTheFactorsOfTheFile) {
   EXPECT_EQ(si_factor({.type = 0}, 1.0, 1.0).quantity, Quantity::unknown);
 }
 
+TEST(Si, APlaceInBracketsIsNoUnit) {
+  for (const char* name : {"x(:,1)", "x(2,:)", "x[:,0]", "out.signals(2).values", "c{1}"}) {
+    EXPECT_EQ(unit_of_column(name), "") << name;
+  }
+  EXPECT_EQ(unit_of_column("s(2).force_n"), "N");
+  EXPECT_EQ(unit_of_column("x(:,1) [g]"), "g");
+  EXPECT_EQ(parse_unit("N·mm").factor, 1e-3);
+}
+
 }  // namespace si_test
 }  // namespace robomill::io

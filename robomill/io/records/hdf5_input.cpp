@@ -13,13 +13,13 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/records/hdf5_id.hpp"
+#include "robomill/io/records/hdf5_parts.hpp"
 #include "robomill/io/records/mat_layout.hpp"
 
 namespace robomill::io {
 namespace {
 
 constexpr std::size_t most_objects = 1000000;
-constexpr const char* damaged = "is a damaged HDF5 file, or one that was cut off";
 constexpr std::array number_classes = {"double", "single", "int8",   "uint8", "int16",
                                        "uint16", "int32",  "uint32", "int64", "uint64"};
 
@@ -28,24 +28,6 @@ struct Found {
   std::size_t objects = 0;
   std::string object = {}, rule = {};
 };
-
-/// What is wrong with how a data set stores its values; empty: nothing.
-std::string storage_fault(hid_t set) {
-  const Hdf5Id list(H5Dget_create_plist(set), H5Pclose);
-  if (!list.good()) return "cannot be examined";
-  if (H5Pget_external_count(list.get()) != 0) return "keeps its values in another file";
-  if (H5Pget_layout(list.get()) == H5D_VIRTUAL) return "is a virtual data set, which is made of others'";
-  const int filters = H5Pget_nfilters(list.get());
-  for (int i = 0; i < filters; ++i) {
-    unsigned flags = 0, configuration = 0;
-    std::size_t values = 0;
-    const H5Z_filter_t filter =
-        H5Pget_filter2(list.get(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, &configuration);
-    const bool own = filter >= H5Z_FILTER_DEFLATE && filter <= H5Z_FILTER_SCALEOFFSET;
-    if (!own) return fmt::format("needs the filter {}, which is a plug-in", filter);
-  }
-  return {};
-}
 
 /// What is wrong with an object of the file itself.
 std::string object_fault(hid_t group, const char* name) {
@@ -73,17 +55,6 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* link, void* data) 
   } catch (const std::exception&) {
     return -1;
   }
-}
-
-/// Before any data of it is read.
-void require_self_contained(hid_t file, const std::string& name) {
-  Found found;
-  const herr_t ended = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &found);
-  if (!found.rule.empty()) {
-    throw InvalidInput(name, fmt::format("{} {}", found.object, found.rule),
-                       "Save the file anew, with all of its data in it");
-  }
-  if (ended < 0) throw InvalidInput(name, damaged);
 }
 
 /// Of H5Literate.
@@ -160,8 +131,36 @@ std::optional<MatVariable> variable_of(hid_t file, const std::string& name, std:
   return out;
 }
 
-/// The file in memory, whose name must be nobody's.
-Hdf5Id open_image(std::string_view content) {
+}  // namespace
+
+std::string storage_fault(hid_t set) {
+  const Hdf5Id list(H5Dget_create_plist(set), H5Pclose);
+  if (!list.good()) return "cannot be examined";
+  if (H5Pget_external_count(list.get()) != 0) return "keeps its values in another file";
+  if (H5Pget_layout(list.get()) == H5D_VIRTUAL) return "is a virtual data set, which is made of others'";
+  const int filters = H5Pget_nfilters(list.get());
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0, configuration = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(list.get(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr, &configuration);
+    const bool own = filter >= H5Z_FILTER_DEFLATE && filter <= H5Z_FILTER_SCALEOFFSET;
+    if (!own) return fmt::format("needs the filter {}, which is a plug-in", filter);
+  }
+  return {};
+}
+
+void require_self_contained(hid_t file, const std::string& name) {
+  Found found;
+  const herr_t ended = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &found);
+  if (!found.rule.empty()) {
+    throw InvalidInput(name, fmt::format("{} {}", found.object, found.rule),
+                       "Save the file anew, with all of its data in it");
+  }
+  if (ended < 0) throw InvalidInput(name, damaged_hdf5);
+}
+
+Hdf5Id open_hdf5_image(std::string_view content) {
   constexpr std::size_t growth = 1 << 16;
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   std::string image(content);  // the library wants to be able to write, and copies it
@@ -172,17 +171,19 @@ Hdf5Id open_image(std::string_view content) {
   return {H5Fopen("/dev/null/image", H5F_ACC_RDONLY, access.get()), H5Fclose};
 }
 
-}  // namespace
+void quiet_hdf5() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLset_loading_state(0);
+}
 
 std::vector<MatVariable> read_hdf5_matrices(std::string_view content, const std::string& file_name) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are reported as ours
-  H5PLset_loading_state(0);
-  const Hdf5Id file = open_image(content);
-  if (!file.good()) throw InvalidInput(file_name, damaged);
+  quiet_hdf5();
+  const Hdf5Id file = open_hdf5_image(content);
+  if (!file.good()) throw InvalidInput(file_name, damaged_hdf5);
   require_self_contained(file.get(), file_name);
   std::vector<std::string> names;
   if (H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add_name, &names) < 0) {
-    throw InvalidInput(file_name, damaged);
+    throw InvalidInput(file_name, damaged_hdf5);
   }
   std::vector<MatVariable> out;
   for (const std::string& name : names) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -18,9 +17,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records/child_reading.hpp"
 #include "robomill/io/records/hdf5_input.hpp"
 #include "robomill/io/records/mat_layout.hpp"
-#include "robomill/io/system/child.hpp"
 #include "robomill/io/system/descriptor.hpp"
 
 namespace robomill::io {
@@ -28,26 +27,6 @@ namespace {
 
 using MatFile = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
-
-/// HDF5, which version 7.3 is, keeps state of its own.
-std::mutex& library() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Beyond what is in use already and what the file's size asks for [bytes].
-constexpr std::size_t most_memory = std::size_t{64} << 20;
-
-/// To read a file in; a second more a megabyte.
-constexpr std::chrono::seconds shortest_time(30);
-
-/// Version 7.3 is an HDF5 file behind a header of version 5; without that header it is one too.
-bool is_hdf5(std::string_view content) {
-  constexpr std::size_t version = 124;
-  const std::string_view words = content.size() < 128 ? std::string_view() : content.substr(version, 4);
-  return words == std::string_view("\0\2IM", 4) || words == std::string_view("\2\0MI", 4) ||
-         content.starts_with("\x89HDF\r\n\x1a\n");
-}
 
 /// All that was written into memory; less where that could not be read.
 std::string content_of(const Descriptor& memory) {
@@ -59,9 +38,6 @@ std::string content_of(const Descriptor& memory) {
   out.resize(count);
   return out;
 }
-
-/// How the child's answer begins.
-constexpr char answered = '+', rejected = '-';
 
 std::size_t bytes_of(matio_classes type) {
   switch (type) {
@@ -215,45 +191,26 @@ std::vector<MatVariable> unpack(std::string_view bytes) {
 
 std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
   const std::string content = read_file(path);
-  const std::size_t file_bytes = content.size();
+  const std::size_t variables = whole_variables(path, content);
+  const bool of_hdf5 = is_hdf5(content);
+  const auto read = [&](const std::string& bytes, const std::string& place) {
+    return pack(of_hdf5 ? read_hdf5_matrices(bytes, place) : read_variables(place, bytes.size(), variables));
+  };
+  const std::string packed = read_in_child(path, content, {.by_name = !of_hdf5, .fault = damaged_mat}, read);
+  try {
+    return unpack(packed);
+  } catch (const std::length_error&) {
+    throw InvalidInput(path.string(), "is a damaged MAT file");
+  }
+}
+
+std::size_t whole_variables(const std::filesystem::path& path, std::string_view content) {
   const auto layout = mat_layout(content);
   if (layout && !layout->whole) {
     throw InvalidInput(path.string(), fmt::format("ends within its variable {}", layout->variables + 1),
                        "Was it cut off while it was written or copied?");
   }
-  const bool of_hdf5 = is_hdf5(content);
-  // What matio cannot read it takes for zeros: it gets the file from memory, into which all of it was read.
-  const Descriptor memory(of_hdf5 ? -1 : ::memfd_create("robomill", MFD_CLOEXEC));
-  const std::string place = fmt::format("/proc/self/fd/{}", memory.get());
-  if (!of_hdf5 && write_all(memory.get(), content) != 0) {
-    throw InvalidInput(path.string(), "cannot be read", "Is there enough memory?");
-  }
-  const std::lock_guard lock(library());
-  // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
-  // for gigabytes.
-  const auto read = [&]() -> std::string {
-    try {
-      return answered + pack(of_hdf5 ? read_hdf5_matrices(content, place)
-                                     : read_variables(place, file_bytes, layout ? layout->variables : 0));
-    } catch (const InvalidInput& error) {
-      return rejected + error.parts().rule + '\n' + error.parts().hint;
-    }
-  };
-  const ChildLimits limits = {.more_memory_bytes = most_memory + 64 * file_bytes,
-                              .time = shortest_time + std::chrono::milliseconds(file_bytes / 1000),
-                              .lent = memory.get(),
-                              .more_files = of_hdf5 ? 0 : 1};
-  const auto packed = run_in_child(limits, read);
-  if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
-  if (packed->front() == rejected) {
-    const std::size_t hint = packed->find('\n');
-    throw InvalidInput(path.string(), packed->substr(1, hint - 1), packed->substr(hint + 1));
-  }
-  try {
-    return unpack(std::string_view(*packed).substr(1));
-  } catch (const std::length_error&) {
-    throw InvalidInput(path.string(), "is a damaged MAT file");
-  }
+  return layout ? layout->variables : 0;
 }
 
 bool mat_seems_to_have(const std::filesystem::path& path, const std::string& name, std::size_t longest_bytes) {
@@ -269,7 +226,7 @@ bool mat_seems_to_have(const std::filesystem::path& path, const std::string& nam
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {
-  const std::lock_guard lock(library());
+  const std::lock_guard lock(mat_library());
   PendingFile pending(path);
   // The library does not report a write that fails: it writes into memory, where none does.
   const Descriptor memory(::memfd_create("robomill", MFD_CLOEXEC));

@@ -38,8 +38,8 @@ struct RecordOptions {
 
 /// Reads a record by its ending, of text without a column of time with the rate that its header states ("sample rate:
 /// 25600 Hz", "Delta_X 3.9e-5"): .csv .txt .dat .asc (columns parted by commas, semicolons, tabs or blanks, with or
-/// without header; a column whose row of units is one of time is converted to s), .mat (v5, v7.3: one variable a
-/// column), .uff .unv .uf (time responses), .wav, .lvm, .tdms (one channel a column).
+/// without header; a column whose row of units is one of time is converted to s), .mat (v5, v7.3), .h5 .hdf5 .hdf, .npy
+/// .npz, .uff .unv .uf (time responses), .wav, .lvm, .tdms (one channel a column).
 /// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
 ///     number of values than those before it, or the time does not run evenly
 [[nodiscard]] Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
@@ -53,8 +53,10 @@ struct RecordOptions {
 
 /// Whether a file is one that read_record reads, by its ending.
 [[nodiscard]] bool is_read_as_record(const std::filesystem::path& path);
+/// The endings of those files: ".csv, .txt, … and .wav".
+[[nodiscard]] std::string record_endings();
 
-/// What a file is that holds a record and is not read, and what to do: "an HDF5 file, which is not read yet". Empty
+/// What a file is that holds a record and is not read, and what to do: "an ASAM MDF file, which is not read yet". Empty
 /// texts where the ending says nothing of it.
 struct UnreadRecord {
   std::string what = {}, remedy = {};

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <sndfile.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
@@ -88,13 +91,60 @@ TEST(Records, TakesTheRateThatAFileStates) {
 
 TEST(Records, WhatIsNotReadIsNamedWithWhatToDo) {
   const Folder folder;
-  for (const auto& [name, what] :
-       {std::pair{"a.TDM", "a LabVIEW TDM file"}, {"a.mf4", "an ASAM MDF file"}, {"a.xlsx", "a spreadsheet"}}) {
-    const std::string said = rejection([&, name = name] { (void)read_record(folder.file(name, "0 1\n1 2\n")); });
-    EXPECT_NE(said.find(std::string("is ") + what + ", which is not read yet"), std::string::npos) << said;
-    EXPECT_NE(said.find("Export it as CSV"), std::string::npos) << said;
+  struct Unread {
+    std::string name, what, remedy;
+  };
+  for (const Unread& unread : {Unread{"a.TDM", "a LabVIEW TDM file", "Export it as CSV"},
+                               {"a.mf4", "an ASAM MDF file", "Export it as CSV"},
+                               {"a.dwd", "a DynoWare file", "Export it as CSV"},
+                               {"a.xlsx", "a spreadsheet", "save the sheet as CSV"},
+                               {"a.xls", "a spreadsheet", "save the sheet as CSV"},
+                               {"a.ods", "a spreadsheet", "save the sheet as CSV"},
+                               {"a.mp3", "a compressed sound file", "record it as WAV"}}) {
+    const std::string said = rejection([&] { (void)read_record(folder.file(unread.name, "0 1\n1 2\n")); });
+    EXPECT_NE(said.find("is " + unread.what + ", which is not read yet"), std::string::npos) << said;
+    EXPECT_NE(said.find(unread.remedy), std::string::npos) << said;
+    EXPECT_FALSE(is_read_as_record(unread.name));
   }
   EXPECT_EQ(unread_record("a.csv").what, "");
+}
+
+/// The endings in a text: words of a point and letters.
+std::vector<std::string> endings_in(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = text.find(" ."); at != std::string::npos; at = text.find(" .", at + 1)) {
+    const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789", at + 2);
+    if (end > at + 2) out.push_back(text.substr(at + 1, end - at - 1));
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+// One list: what is read, what errors name, and what the documents say.
+TEST(Records, EndingsAreTheSameEverywhere) {
+  const std::vector<std::string> known = endings_in(" " + record_endings());
+  ASSERT_EQ(known.size(), 16U);
+  for (const std::string& ending : known) {
+    EXPECT_TRUE(is_read_as_record("a" + ending)) << ending;
+    EXPECT_EQ(unread_record("a" + ending).what, "") << ending;
+  }
+  const std::filesystem::path source(ROBOMILL_SOURCE_DIR);
+  struct Place {
+    const char *file, *before;
+  };
+  for (const Place& place : {Place{"docs/formats.md", "Files of measurement are"},
+                             {"docs/formats.md", "Inputs:"},
+                             {"robomill/io/README.md", "| `records/records.hpp` |"},
+                             {"robomill/io/sample_source.hpp", "/// A file by its ending ("}}) {
+    const std::string text = read_file(source / place.file);
+    const std::size_t at = text.find(place.before);
+    ASSERT_NE(at, std::string::npos) << place.before;
+    std::string line = text.substr(at, text.find(place.before[0] == '/' ? "`format`" : "\n", at) - at);
+    for (char& letter : line) {
+      if (letter == '(' || letter == '`' || letter == '\n' || letter == '/') letter = ' ';
+    }
+    EXPECT_EQ(endings_in(line), known) << place.file << ": " << line;
+  }
 }
 
 // Property: of a time that is rounded so far that values repeat the whole column gives the rate.
@@ -128,10 +178,77 @@ TEST(Records, ReadsUniversalFiles) {
   EXPECT_NEAR(record.sample_rate_hz, 51200.0, 1e-6);
   EXPECT_EQ(record.column("ax")(100), 9.80665);
   EXPECT_EQ(record.column("force_n")(100), 1.0);
+  EXPECT_EQ(record.unit(0), "m/s^2");
+  EXPECT_EQ(record.unit(1), "N");
+  // Of another rate it stands in another record.
   force.abscissa *= 2.0;
   write_file(folder.at("a.uff"), format_uff({function, force}, false));
-  EXPECT_NE(rejection([&] { (void)read_record(folder.at("a.uff")); }).find("differs from 51200 Hz before it"),
+  const Record one = read_record(folder.at("a.uff"));
+  EXPECT_EQ(one.names, std::vector<std::string>{"ax"});
+  EXPECT_EQ(one.left_out, std::vector<std::string>{"force_n (25600 Hz, 101 samples)"});
+}
+
+/// A time response of four samples.
+UffFunction response(double step, const std::string& label, int type, const std::string& unit) {
+  UffFunction out;
+  out.type = 1;
+  out.abscissa = Eigen::VectorXd::LinSpaced(4, 0.0, 3.0 * step);
+  out.values = Eigen::Vector4d(0, 1, -2, 3).cast<std::complex<double>>();
+  out.abscissa_axis = {.type = 17, .label = "Time", .unit = "s"};
+  out.numerator = {.type = type, .label = label, .unit = unit};
+  return out;
+}
+
+TEST(Records, UniversalFilesSayUnitsAndNames) {
+  const Folder folder;
+  const auto read = [&](const std::vector<UffFunction>& functions, bool binary) {
+    write_file(folder.at("a.uff"), format_uff(functions, binary));
+    return read_record(folder.at("a.uff"));
+  };
+  UffFunction x = response(0.5, "Acceleration", 12, "mm/s²"), z = x, force = response(0.5, "NONE", 13, "NONE");
+  x.response_node = z.response_node = 7;
+  x.response_direction = 1;
+  z.response_direction = -3;
+  force.id[0] = "Hammer";
+  for (const bool binary : {false, true}) {
+    const Record record = read({x, z, force, response(0.5, "Mic", 0, "V")}, binary);
+    EXPECT_NEAR(record.sample_rate_hz, 2.0, 1e-12);
+    EXPECT_EQ(record.names, (std::vector<std::string>{"Acceleration 7+x", "Acceleration 7-z", "Hammer", "Mic"}));
+    EXPECT_EQ(record.units, (std::vector<std::string>{"m/s^2", "m/s^2", "N", "V"}));
+    EXPECT_NEAR(record.column("Acceleration 7-z")(3), 0.003, 1e-15);
+    EXPECT_EQ(record.column("Hammer"), Eigen::Vector4d(0, 1, -2, 3));
+  }
+  // An abscissa in ms; one that is uneven, which the file stores as such; lines over frequency; another start.
+  UffFunction in_ms = x, uneven = force, lines = force, later = force, pair = force;
+  in_ms.abscissa *= 1000.0;
+  in_ms.abscissa_axis.unit = "ms";
+  uneven.abscissa(1) += 0.2;
+  lines.abscissa_axis = {.type = 18, .label = "Frequency", .unit = "Hz"};
+  later.abscissa.array() += 0.5;
+  pair.is_complex = true;
+  lines.id[0] = "Lines";
+  later.id[0] = "Later";
+  pair.id[0] = "Pair";
+  const Record record = read({in_ms, uneven, lines, later, pair}, true);
+  EXPECT_EQ(record.names, (std::vector<std::string>{"Acceleration", "Hammer"}));
+  EXPECT_NEAR(record.sample_rate_hz, 2.0, 1e-9);
+  EXPECT_EQ(record.left_out, (std::vector<std::string>{"Lines (over Hz)", "Later (2 Hz, 4 samples, starts 0.5 s later)",
+                                                       "Pair (complex values)"}));
+  uneven.abscissa(1) += 0.2;
+  EXPECT_NE(rejection([&] { static_cast<void>(read({uneven}, false)); }).find("Hammer (the time does not run evenly"),
             std::string::npos);
+}
+
+// Of a data type and a unit that contradict each other the unit counts, which has the factor.
+TEST(Records, AUnitOfAUniversalFileCountsBeforeItsDataType) {
+  const Folder folder;
+  write_file(folder.at("a.uff"), format_uff({response(0.5, "Hammer", 12, "kN")}, false));
+  const Record record = read_record(folder.at("a.uff"));
+  EXPECT_EQ(record.column("Hammer"), Eigen::Vector4d(0, 1000, -2000, 3000));
+  EXPECT_EQ(record.units, std::vector<std::string>{"N"});
+  ASSERT_EQ(record.notes.size(), 1U);
+  EXPECT_NE(record.notes[0].find("Warning: "), std::string::npos);
+  EXPECT_NE(record.notes[0].find("its ordinate is of data type 12, and in \"kN\": the unit counts"), std::string::npos);
 }
 
 void write_wav(const std::filesystem::path& path, int format, const std::vector<double>& frames, int channels) {

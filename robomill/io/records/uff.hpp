@@ -3,6 +3,7 @@
 #include <array>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,11 @@ struct UffFile {
 ///     data
 /// Source: [SDRC58], [SDRC164]
 [[nodiscard]] UffFile parse_uff(std::string_view content, const std::string& where);
+
+using UffTake = std::function<void(UffFunction&&)>;
+/// The same, a function at a time. @returns the notes
+[[nodiscard]] std::vector<std::string> read_uff(std::string_view content, const std::string& where,
+                                                const UffTake& take);
 
 /// Data set 164 with SI units, then data sets 58 (numbers as E20.12) or 58b (little-endian doubles). An abscissa is
 /// written as first value and step where these, in the 12 characters that they have, give it back to a millionth of the

@@ -127,9 +127,10 @@ struct Binary {
 
 class Reader {
  public:
-  Reader(std::string_view content, const std::string& where) : lines_(content), where_(where) {}
+  Reader(std::string_view content, const std::string& where, const UffTake& take)
+      : lines_(content), where_(where), take_(take) {}
 
-  UffFile read() {
+  std::vector<std::string> read() {
     while (!lines_.at_end()) {
       const std::string_view line = lines_.next();
       if (is_delimiter(line)) {
@@ -145,7 +146,7 @@ class Reader {
     for (const auto& [number, count] : skipped_) {
       note(fmt::format("skipped {} of data set {}", count, number));
     }
-    return std::move(file_);
+    return std::move(notes_);
   }
 
  private:
@@ -155,7 +156,7 @@ class Reader {
                                             .rule = std::move(rule),
                                             .hint = std::move(hint)});
   }
-  void note(const std::string& text) { file_.notes.push_back(where_ + ": " + text); }
+  void note(const std::string& text) { notes_.push_back(where_ + ": " + text); }
 
   void read_data_set() {
     const std::string_view header = lines_.next();
@@ -245,7 +246,7 @@ class Reader {
     if (!lines_.at_end() && !trimmed(lines_.peek()).empty() && !is_delimiter(lines_.peek())) {
       note(fmt::format("line {} belongs to no data set and is left out", lines_.number() + 1));
     }
-    file_.functions.push_back(std::move(function));
+    take_(std::move(function));
   }
 
   std::string_view header_line() {
@@ -461,7 +462,8 @@ class Reader {
 
   Lines lines_;
   const std::string& where_;
-  UffFile file_;
+  const UffTake& take_;
+  std::vector<std::string> notes_;
   std::vector<std::pair<std::string, int>> skipped_;
   bool began_ = false;
   double length_factor_ = 1.0, force_factor_ = 1.0;
@@ -469,8 +471,15 @@ class Reader {
 
 }  // namespace
 
+std::vector<std::string> read_uff(std::string_view content, const std::string& where, const UffTake& take) {
+  return Reader(content, where, take).read();
+}
+
 UffFile parse_uff(std::string_view content, const std::string& where) {
-  return Reader(content, where).read();
+  UffFile out;
+  out.notes =
+      read_uff(content, where, [&out](UffFunction&& function) { out.functions.push_back(std::move(function)); });
+  return out;
 }
 
 }  // namespace robomill::io

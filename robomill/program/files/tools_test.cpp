@@ -195,8 +195,8 @@ TEST(Tools, WhatAptDoesWithOthersIsPassed) {
                            2, "part.apt"))
                   .time_s,
               5.0, 1e-9);
-  expect_rejected(file("CUTCOM/LEFT\n"), 2,
-                  "part.apt:6: LOADTL = \"CUTCOM/LEFT\"; of another tool is still on where this one moves", "part.apt");
+  expect_rejected(file("CYCLE/DRILL,5\n"), 2,
+                  "part.apt:6: LOAD = \"CYCLE/DRILL,5\"; of another tool is still on where this one moves", "part.apt");
   for (const char* statement : {"TRANS/1,2,3", "ROTABL/30", "CALL/A", "TRACUT/1,0,0,0", "JUMPTO/A"}) {
     expect_rejected(file(std::string(statement) + "\n"), 2, "part.apt:4: ", "part.apt");
   }

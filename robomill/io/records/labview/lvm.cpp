@@ -14,10 +14,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records/labview/channels.hpp"
+#include "robomill/io/records/channels.hpp"
 #include "robomill/io/records/labview/lvm_axis.hpp"
 #include "robomill/io/records/labview/lvm_header.hpp"
-#include "robomill/io/records/sample_parts.hpp"
+#include "robomill/io/records/samples/sample_parts.hpp"
 #include "robomill/io/system/descriptor.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/usual_ranges.hpp"

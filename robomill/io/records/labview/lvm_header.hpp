@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robomill/io/records/labview/channels.hpp"
+#include "robomill/io/records/channels.hpp"
 
 namespace robomill::io {
 

@@ -12,7 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records/labview/channels.hpp"
+#include "robomill/io/records/channels.hpp"
 #include "robomill/io/records/labview/tdms_scale.hpp"
 #include "robomill/io/records/labview/tdms_segments.hpp"
 #include "robomill/io/si.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "robomill/io/byte_order.hpp"
-#include "robomill/io/records/labview/channels.hpp"
+#include "robomill/io/records/channels.hpp"
 #include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {

@@ -1,4 +1,4 @@
-#include "robomill/io/records/labview/channels.hpp"
+#include "robomill/io/records/channels.hpp"
 
 #include <fmt/format.h>
 
@@ -25,15 +25,17 @@ bool starts_with_it(const FileChannel& one, const FileChannel& other) {
 }
 
 /// Whether a channel can stand beside the one that a record is built around.
-bool fits(const FileChannel& one, const FileChannel& other) {
+bool fits(const FileChannel& one, const FileChannel& other, ChannelLengths lengths) {
   if (!is_usable(other)) return false;
+  const bool any = lengths == ChannelLengths::any;
   if (one.sample_rate_hz <= 0.0 || other.sample_rate_hz <= 0.0) {
-    return other.sample_rate_hz <= 0.0 && other.samples == one.samples;
+    const bool neither = one.sample_rate_hz <= 0.0 && other.sample_rate_hz <= 0.0;
+    return other.sample_rate_hz <= 0.0 && (other.samples == one.samples || (any && neither));
   }
   const double rates = std::abs(other.sample_rate_hz / one.sample_rate_hz - 1.0);
   const auto length = static_cast<double>(one.samples);
   return rates <= std::max(same_rate, one.rate_error + other.rate_error) && starts_with_it(one, other) &&
-         std::abs(static_cast<double>(other.samples) - length) < length_tolerance * length;
+         (any || std::abs(static_cast<double>(other.samples) - length) < length_tolerance * length);
 }
 
 std::string reason(const FileChannel& channel, const FileChannel& rated) {
@@ -56,17 +58,23 @@ double ChannelStart::after(const ChannelStart& other) const {
   return day_s * static_cast<double>(day - other.day) + (s - other.s);
 }
 
-ChannelsTogether channels_together(const std::vector<FileChannel>& channels, const std::string& file) {
+ChannelsTogether channels_together(const std::vector<FileChannel>& channels, const std::string& file,
+                                   ChannelLengths lengths) {
   if (channels.size() > most_channels) {
     throw InvalidInput(file, fmt::format("holds {} channels, and at most {} are read", channels.size(), most_channels));
   }
   ChannelsTogether out;
   double most = 0.0;
+  // Where lengths say nothing, a channel without a rate is none to build on beside one that has it.
+  const bool any_rated =
+      lengths == ChannelLengths::any && std::ranges::any_of(channels, [](const FileChannel& channel) {
+        return is_usable(channel) && channel.sample_rate_hz > 0.0;
+      });
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!is_usable(channels[i])) continue;
+    if (!is_usable(channels[i]) || (any_rated && channels[i].sample_rate_hz <= 0.0)) continue;
     double held = 0.0;
     for (const FileChannel& other : channels) {
-      if (fits(channels[i], other)) held += static_cast<double>(other.samples);
+      if (fits(channels[i], other, lengths)) held += static_cast<double>(other.samples);
     }
     if (held <= most) continue;
     most = held;
@@ -77,9 +85,10 @@ ChannelsTogether channels_together(const std::vector<FileChannel>& channels, con
   out.samples = rated.samples;
   for (std::size_t i = 0; most > 0.0 && i < channels.size(); ++i) {
     const bool follows = channels[i].sample_rate_hz <= 0.0 && channels[i].samples == rated.samples;
-    if (!is_usable(channels[i]) || (!follows && !fits(rated, channels[i]))) continue;
+    if (!is_usable(channels[i]) || (!follows && !fits(rated, channels[i], lengths))) continue;
     out.places.push_back(i);
-    out.samples = std::min(out.samples, channels[i].samples);
+    out.samples = lengths == ChannelLengths::any ? std::max(out.samples, channels[i].samples)
+                                                 : std::min(out.samples, channels[i].samples);
   }
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (!std::ranges::binary_search(out.places, i)) out.left_out.push_back(reason(channels[i], rated));

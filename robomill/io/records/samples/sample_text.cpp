@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/records/records.hpp"
-#include "robomill/io/records/sample_parts.hpp"
+#include "robomill/io/records/samples/sample_parts.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// Of the readers of this folder.
+// Of the readers of files whose channels have rates of their own.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -36,14 +36,21 @@ inline constexpr std::size_t most_channels = 4096;
 struct ChannelsTogether {
   std::vector<std::size_t> places = {};    ///< of the channels taken, in their order
   std::size_t rated = 0;                   ///< the first of them that says its rate, else the first
-  std::uint64_t samples = 0;               ///< that all of them have
+  std::uint64_t samples = 0;               ///< that all of them have; of any lengths those of the longest
   std::vector<std::string> left_out = {};  ///< the others, each with the reason
 };
 
-/// Of one rate and start, and of lengths that differ by less than a tenth: those that hold the most samples. A channel
-/// that says no rate goes with others of its length.
+/// Which lengths stand beside each other.
+enum class ChannelLengths : std::uint8_t {
+  alike,  ///< that differ by less than a tenth; all are to be cut to the shortest
+  any     ///< each column has its own
+};
+
+/// Of one rate and start, and of such lengths: those that hold the most samples. A channel that says no rate goes with
+/// others of its length, or where none says one with all.
 /// @throws InvalidInput with the reasons if there are none, or more channels than most_channels
-[[nodiscard]] ChannelsTogether channels_together(const std::vector<FileChannel>& channels, const std::string& file);
+[[nodiscard]] ChannelsTogether channels_together(const std::vector<FileChannel>& channels, const std::string& file,
+                                                 ChannelLengths lengths = ChannelLengths::alike);
 
 /// Names, units and rate of the channels taken, and notes on the others; the columns are for the caller to fill.
 void take_channels(Record& record, const std::vector<FileChannel>& channels, const ChannelsTogether& taken);

@@ -1,4 +1,4 @@
-#include "robomill/io/records/sample_alignment.hpp"
+#include "robomill/io/records/samples/sample_alignment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records/sample_parts.hpp"
+#include "robomill/io/records/samples/sample_parts.hpp"
 #include "robomill/io/records/sound_file.hpp"
 
 namespace robomill::io {
