@@ -392,7 +392,8 @@ void AptReader::reject_start(const char* what) const {
 }
 
 void AptReader::assume_once(Once what, Assumption assumption) {
-  if (!passes() && !std::exchange(assumed_[static_cast<std::size_t>(what)], true)) remarks_.assume(std::move(assumption));
+  if (!passes() && !std::exchange(assumed_[static_cast<std::size_t>(what)], true))
+    remarks_.assume(std::move(assumption));
 }
 
 bool AptReader::is_second_tool() {

@@ -39,7 +39,7 @@ class AptReader final : public ProgramReader {
     std::optional<Eigen::Vector3d> plain_axis = {};  ///< of positions without an axis; none: as it stands
     bool moved_frame = false;                        ///< positions do not count in W
     Made made = Made::straight;                      ///< by the last statement
-    bool passes = false;  ///< the last statement is in a part of a tool that is not chosen
+    bool passes = false;                             ///< the last statement is in a part of a tool that is not chosen
   };
   [[nodiscard]] Modes modes() const;
 

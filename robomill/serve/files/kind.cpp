@@ -233,12 +233,12 @@ FileKind kind_of_text(const Beginning& file) {
 }
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kinds_by_ending = {
-     {{".ngc", "program"}, {".nc", "program"},    {".gcode", "program"}, {".tap", "program"},       {".apt", "program"},
-      {".cls", "program"}, {".cl", "program"},    {".ncl", "program"},   {".aptsource", "program"}, {".uff", "frf"},
-      {".unv", "frf"},     {".uf", "frf"},        {".wav", "record"},    {".lvm", "record"},        {".tdms", "record"},
-      {".npy", "record"},  {".npz", "record"},    {".hdf", "record"},
-      {".html", "report"}, {".jsonl", "record"},  {".h5", "result"},     {".hdf5", "result"},       {".src", "result"},
-     {".mod", "result"},  {".script", "result"}, {".servoj", "result"}}};
+    {{".ngc", "program"},  {".nc", "program"},  {".gcode", "program"}, {".tap", "program"},       {".apt", "program"},
+     {".cls", "program"},  {".cl", "program"},  {".ncl", "program"},   {".aptsource", "program"}, {".uff", "frf"},
+     {".unv", "frf"},      {".uf", "frf"},      {".wav", "record"},    {".lvm", "record"},        {".tdms", "record"},
+     {".npy", "record"},   {".npz", "record"},  {".hdf", "record"},    {".html", "report"},       {".jsonl", "record"},
+     {".h5", "result"},    {".hdf5", "result"}, {".src", "result"},    {".mod", "result"},        {".script", "result"},
+     {".servoj", "result"}}};
 
 }  // namespace
 
