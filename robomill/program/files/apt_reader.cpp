@@ -396,30 +396,6 @@ void AptReader::assume_once(Once what, Assumption assumption) {
     remarks_.assume(std::move(assumption));
 }
 
-bool AptReader::is_second_tool() {
-  if (!cutting_ || tool_ == cutting_tool_) return false;
-  second_tool_line_ = tool_line_;
-  second_tool_word_ = tool_word_;
-  second_move_line_ = line_;
-  return true;
-}
-
-void AptReader::at_end() {
-  if (second_tool_line_ == 0) return;
-  throw SeveralTools(
-      {.where = fmt::format("{}:{}", file_, second_tool_line_),
-       .field = second_tool_word_,
-       .rule = fmt::format("mounts another tool than the one that has cut, whose length is not known here, and line "
-                           "{} moves it",
-                           second_move_line_),
-       .hint = "Write a program for each tool"},
-      tools_.parts(), tools_.count());
-}
-
-void AptReader::begin_cutting() {
-  if (!std::exchange(cutting_, true)) cutting_tool_ = tool_;
-}
-
 void AptReader::go(const Pose& end) {
   const bool rapid = std::exchange(rapid_, false);
   begin_part_move();
