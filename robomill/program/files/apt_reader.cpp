@@ -118,6 +118,7 @@ AptReader::Modes AptReader::modes() const {
                .feed_in_inches = feed_.inches,
                .feed_per_revolution = feed_.per_revolution,
                .speed_rad_per_s = spindle_speed_rad_per_s_,
+               .spindle = spindle_,
                .plain_axis = plain_axis_,
                .moved_frame = frame_.has_value(),
                .made = made_,
@@ -193,11 +194,11 @@ const std::vector<AptReader::Statement>& AptReader::statements() {
 }
 
 void AptReader::read(std::string_view statement) {
+  made_ = Made::straight;
   split(statement);
   if (text_.empty()) return;
   const bool mounts = word_ == "LOADTL" || word_ == "LOAD" || word_ == "TURRET" || word_ == "TOOLPATH";
   if (second_tool_line_ > 0 && !mounts && word_ != "FINI") return;
-  made_ = Made::straight;
   if (word_ == "GOTO") {
     take_goto();
     return;
@@ -231,12 +232,13 @@ void AptReader::read(std::string_view statement) {
 }
 
 bool AptReader::pass_over() {
-  if (word_ == "CUTCOM") return true;
   if (word_ == "CYCLE") {
-    const bool off = fields_.size() == 1 && fields_[0] == "OFF";
-    passed_switch_ = off ? std::string() : shown_;
+    const std::string_view alone = fields_.size() == 1 ? fields_[0] : std::string_view();
+    if (alone == "INIT" || alone == "CLEAR") return false;
+    passed_switch_ = alone == "OFF" || alone == "NOMORE" ? std::string() : shown_;
     return true;
   }
+  if (word_ == "RETRCT" && !fields_.empty()) return true;
   const std::string_view first = word_.substr(0, word_.find(','));
   if (std::ranges::find(order_of_statements, first) != order_of_statements.end()) return false;
   const auto* const found = std::ranges::find(moving, first, &Moving::word);
@@ -351,9 +353,7 @@ void AptReader::take_goto() {
 
 void AptReader::take_godlta() {
   take_numbers(1, 3);
-  if (!start_ && !passes()) {
-    reject("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
-  }
+  if ((!start_ || lost_line_ > 0) && !passes()) reject_start("a step");
   if (cycle_.on && !rapid_ && !passes()) {
     reject("GODLTA", std::nullopt, "", "is a step to a hole of a drilling cycle", "Give holes by GOTO/");
   }
@@ -374,7 +374,7 @@ void AptReader::take_from() {
   if (!start_ || passes()) {
     begin_at(at);
     highest_m_ = at.tip_m.z();
-  } else if (moves_to(at)) {
+  } else if (moves_to(at) && !is_second_tool()) {
     reject_text("FROM", shown_, "is another position than the one that the tool has come to",
                 "FROM/ states where the first move begins; GOTO/ moves");
   }
@@ -407,6 +407,13 @@ void AptReader::go(const Pose& end) {
   }
   if (!passed_switch_.empty()) {
     reject_text(tool_word_, passed_switch_, "of another tool is still on where this one moves", "Is its OFF missing?");
+  }
+  if (lost_line_ > 0 && is_second_tool()) return;
+  if (compensation_line_ > 0) {
+    assume_once(Once::compensation,
+                {.what = fmt::format("Path under CUTCOM, from line {} on", std::exchange(compensation_line_, 0)),
+                 .taken = "that of the tool's centre: the machine compensates for a worn tool alone",
+                 .key = "CUTCOM/OFF"});
   }
   if (cycle_cut_line_ > 0 && moved_since_cut_line_ == 0) moved_since_cut_line_ = line_;
   if (circle_) {

@@ -35,6 +35,7 @@ class AptReader final : public ProgramReader {
     double feed = 0.0;  ///< a minute or a revolution; 0: none yet
     bool feed_in_inches = false, feed_per_revolution = false;
     double speed_rad_per_s = 0.0;
+    Spindle spindle = Spindle::not_given;
     std::optional<FeedRate> cycle_feed = {};         ///< of a drilling cycle that is on
     std::optional<Eigen::Vector3d> plain_axis = {};  ///< of positions without an axis; none: as it stands
     bool moved_frame = false;                        ///< positions do not count in W
@@ -72,6 +73,8 @@ class AptReader final : public ProgramReader {
   void go(const Pose& end);
   void go_straight(const Pose& end, bool rapid);
   [[nodiscard]] double feed_duration_s(const FeedRate& feed, double length_m, double turn_rad) const;
+  /// Some tool has a position, be it one that is not chosen.
+  [[nodiscard]] bool begun() const { return start_ || tools_.moved(); }
   /// Another tool than the one that has cut moves: from here on tools alone are looked at.
   bool is_second_tool();
   void mount();
@@ -216,6 +219,7 @@ class AptReader final : public ProgramReader {
   std::string tool_, cutting_tool_;   ///< both; the one of the moves at feed
   std::string tool_word_ = "LOADTL";  ///< of the statement that mounted it
   std::size_t tool_line_ = 0;
+  std::size_t compensation_line_ = 0;  ///< of a CUTCOM behind which nothing has moved yet
   std::string second_tool_word_;
   std::string passed_switch_;  ///< of tools that are not chosen: a cycle that is on
   std::size_t second_tool_line_ = 0, second_move_line_ = 0;

@@ -144,6 +144,7 @@ class Walk {
     try {
       reader_->finish();
     } catch (const SeveralTools& error) {
+      if (reading_.tool) throw;
       throw InvalidInput(with_contents(error));
     }
   }

@@ -79,7 +79,7 @@ struct ROBOMILL_API ProgramReading {
 /// other work frames are read where G10 L2 gives them. After G28, G30 and G53 the position is not known until a rapid
 /// gives it. Rejected are feeds that are missing or not above 0, two G codes of one group, words of axes that the
 /// machine does not have, arcs whose radius does not fit, codes that would move the tool or its frame in ways that are
-/// not read (splines, compensation, macros, tilted planes), M codes not known to be harmless, and moves at feed after
+/// not read (splines, compensation, macros), M codes not known to be harmless, and moves at feed after
 /// another tool, another length, another work frame or the end of the tool centre point.
 ///
 /// Several tools: of the tool that the reading chooses, the first complete position after its change makes the start.

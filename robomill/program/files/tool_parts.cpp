@@ -33,7 +33,8 @@ std::optional<int> whole_tool(double number) {
 
 void ToolParts::mount(std::optional<int> number, std::string name, std::size_t line) {
   if (now_.lines > 0) --now_.lines;  // the statement that mounts is the new tool's
-  if (counts(now_)) {
+  // One without a number that has moved nothing is named again: TOOL PATH by LOAD.
+  if (counts(now_) && (now_.moves || now_.number)) {
     ++over_count_;
     if (over_.size() < most_parts) over_.push_back(std::move(now_));
   }

@@ -173,7 +173,7 @@ TEST(Tools, OfApt) {
   EXPECT_NEAR(sums_of(second).time_s, 60.0 * (10.0 / 100.0 + 1.0 / 200.0), 1e-9);
   expect_rejected(
       file, {},
-      "part.apt:11: LOADTL: mounts another tool than the one that has cut, whose length is not known here, and "
+      "part.apt:11: LOAD: mounts another tool than the one that has cut, whose length is not known here, and "
       "line 14 moves it; the program has",
       "part.apt");
   expect_rejected(file, {},
@@ -200,7 +200,48 @@ TEST(Tools, WhatAptDoesWithOthersIsPassed) {
   for (const char* statement : {"TRANS/1,2,3", "ROTABL/30", "CALL/A", "TRACUT/1,0,0,0", "JUMPTO/A"}) {
     expect_rejected(file(std::string(statement) + "\n"), 2, "part.apt:4: ", "part.apt");
   }
-  expect_rejected(file("CYCLE/DRILL,5\n"), 1, "part.apt:4: CYCLE", "part.apt");
+}
+
+// The paths' tools of NX have names; LOAD gives the number.
+TEST(Tools, OfNx) {
+  const std::string one = "TOOL PATH/A,TOOL,MILL\nLOAD/TOOL,4\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\n";
+  expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {},
+                  "part.cls:6: TOOL PATH: mounts another tool than the one that has cut", "part.cls");
+  expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {}, "the program has T4 (line 2, 4 lines, 1 move",
+                  "part.cls");
+  const std::string two = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
+  expect_rejected(two, {}, "T4 (line 2, 5 lines, 1 move, 1 s at feed) and T5 (line 7,", "part.cls");
+  EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm, 7.0, 1e-9);
+  expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nGOHOME\nLOADTL/2\nGOTO/5,5,5\nGOTO/6,5,5\n", {},
+                  "part.cls:6: LOADTL: mounts another tool", "part.cls");
+  expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2\nFROM/0,0,100\nGOTO/5,5,5\n", {},
+                  "part.cls:5: LOADTL: mounts another tool", "part.cls");
+  EXPECT_EQ(read("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/01\nGOTO/2,0,0\n", {}, "part.cls").blocks.size(),
+            2U);
+}
+
+// W is the system of the program's first position, whichever tool is chosen.
+TEST(Tools, PositionsCountInTheSystemOfTheFirstOne) {
+  const std::string text =
+      "MSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\nFEDRAT/100\nGOTO/0,0,10,.6,0,.8\nGOTO/0,0,0,.6,0,.8\n"
+      "MSYS/100,0,0,1,0,0,0,1,0\nLOAD/TOOL,2\nGOTO/0,0,10\nGOTO/0,0,0\n";
+  const Program program = read(text, 2, "part.cls");
+  expect_at(program.start, 100, 0, 10);
+  EXPECT_EQ(program.start.axis, Eigen::Vector3d::UnitZ());
+  EXPECT_FALSE(program.assumed.empty());
+}
+
+TEST(Tools, CutsOfOthersBetweenArcsAreNotMissed) {
+  expect_rejected(
+      "LOADTL/1\nFROM/10,0,0\nFEDRAT/60\nINDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,0,10),ON,(LINE/0,0,0,0,10,0)\n"
+      "LOADTL/2\nGOTO/9,9,9\nGOTO/0,10,0\nLOADTL/1\nINDIRV/-1,0,0\n"
+      "TLON,GOFWD/(CIRCLE/0,0,0,10),ON,(LINE/0,0,0,-10,0,0)\n",
+      1, "T1: moves again in this line after T2 (line 6) has moved", "part.cls");
+}
+
+TEST(Tools, AreListedFromWithinSubprograms) {
+  expect_rejected("T1 M6\nG0 X0 Y0 Z5\nF100\nM98 P1\nT2 M6\nG0 X0 Y0 Z5\nM98 P1\nM30\nO1\nG1 Z-1\nG0 Z5\nM99\n", {},
+                  "the program has T1");
 }
 
 Rewritten rewrite(const std::string& text, int tool, double speed, double feed, const std::string& name = "part.nc") {

@@ -125,6 +125,8 @@ void AptReader::take_curve() {
   if (!direction_) {
     reject_text("TLON", shown_, "has no direction before it", "Known is INDIRV/ before TLON,GOFWD/");
   }
+  begin_part_move();
+  if (lost_line_ > 0 && is_second_tool()) return;
   if (!start_ || lost_line_ > 0) reject_start("an arc");
   const bool rapid = std::exchange(rapid_, false);
   const Vector3d direction = *std::exchange(direction_, std::nullopt);
@@ -151,8 +153,9 @@ bool AptReader::is_on(const Circle& circle, const Vector3d& tip_m) const {
     return (way - way.dot(circle.normal) * circle.normal).norm();
   };
   const double radius_m = radius_of(pose_.tip_m);
-  return tip_m != pose_.tip_m && std::abs(radius_of(tip_m) - radius_m) <= arc_radius_error_m(radius_m, inches_) &&
-         std::abs((tip_m - pose_.tip_m).dot(circle.normal)) <= arc_radius_error_m(0.0, inches_);
+  const double rounding_m = arc_radius_error_m(0.0, inches_);
+  return tip_m != pose_.tip_m && std::abs(radius_of(tip_m) - radius_m) <= rounding_m &&
+         std::abs((tip_m - pose_.tip_m).dot(circle.normal)) <= rounding_m;
 }
 
 void AptReader::check_radii(const Circle& circle, const Arc& arc) const {

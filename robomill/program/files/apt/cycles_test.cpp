@@ -263,12 +263,21 @@ TEST(AptFrames, RetractsAndTheMachinesHome) {
   expect_rejected("GOTO/0,0,0\nRETRCT\nCIRCLE/0,0,0,0,0,1\nGOTO/1,0,0\n", "is an arc after RETRCT in line 2");
 }
 
+TEST(AptCycles, AHeightToGoBackToEndsWithItsHoles) {
+  const Program program = read(
+      "GOTO/0,0,50\nCYCLE/CLEAR\nCYCLE/DRILL,FEDTO,5,MMPM,60,RAPTO,3,RTRCTO,25\nGOTO/0,0,0\nGOHOME\nRAPID\n"
+      "GOTO/100,0,5\nCYCLE/OFF\n");
+  EXPECT_NEAR(program.blocks.back().end.tip_m.x(), 0.1, 1e-12) << "no move back over the hole";
+  expect_rejected("GOTO/0,0,50\nFEDRAT/100\nGOTO/0,0,0\nGOHOME\nRAPID\nGODLTA/10,0,0\n",
+                  "is a step after GOHOME in line 4");
+}
+
 TEST(AptTools, EachStatementThatNamesOneCounts) {
   const std::string cut = "LOAD/TOOL,5\nSELECT/TOOL,6\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\n";
   EXPECT_EQ(read(cut + "LOAD/TOOL,5\nGOTO/2,0,0\n").blocks.size(), 2U);
-  expect_rejected(cut + "LOAD/TOOL,6\nRAPID/\nGOTO/2,0,0\n", "LOAD: in line 6 mounts another tool");
+  expect_rejected(cut + "LOAD/TOOL,6\nRAPID/\nGOTO/2,0,0\n", "part.apt:6: LOAD: mounts another tool");
   expect_rejected("TOOL PATH/A,TOOL,T1\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\nTOOL PATH/B,TOOL,T2\nGOTO/2,0,0\n",
-                  "TOOL PATH: in line 5 mounts another tool");
+                  "part.apt:5: TOOL PATH: mounts another tool");
   EXPECT_EQ(read("UNIT/INCH\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\n").blocks[0].end.tip_m.x(), 0.0254);
   const Program normals = read("GOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0,0,0,1,.6,.8,0\n");
   EXPECT_EQ(normals.blocks.size(), 1U);

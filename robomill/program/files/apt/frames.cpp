@@ -40,8 +40,8 @@ void AptReader::take_system() {
     const auto vector = [&](std::size_t i) { return Vector3d(numbers[i], numbers[i + 1], numbers[i + 2]); };
     frame = frame_of(vector(3), vector(6), vector(0) * unit_m());
   }
-  if (!start_ || text_ == system_) {
-    if (!start_) base_system_ = frame;
+  if (!begun() || text_ == system_) {
+    if (!begun()) base_system_ = frame;
     system_ = text_;
     skip_statement();
     return;
@@ -55,9 +55,12 @@ void AptReader::take_system() {
   if (!(*frame == base)) {
     frame_ = Frame{.rotation = base.rotation.transpose() * frame->rotation,
                    .origin_m = base.rotation.transpose() * (frame->origin_m - base.origin_m)};
-    assume_once(Once::systems, {.what = fmt::format("Positions behind another MSYS, from line {} on", line_),
-                                .taken = "moved into the system of the first one",
-                                .key = "a file for each MSYS"});
+    // Be it before the chosen tool is mounted: its positions come behind it.
+    if (!std::exchange(assumed_[static_cast<std::size_t>(Once::systems)], true)) {
+      remarks_.assume({.what = fmt::format("Positions behind another MSYS, from line {} on", line_),
+                       .taken = "moved into the system of the first one",
+                       .key = "a file for each MSYS"});
+    }
   }
   plain_axis_ = frame_ ? Vector3d(frame_->rotation.col(2)) : Vector3d(Vector3d::UnitZ());
 }
@@ -76,7 +79,7 @@ void AptReader::take_setup_system() {
   }
   skip_statement();
   setup_x_ = frame.rotation.col(0);
-  if (!start_) setup_system_ = frame;
+  if (!begun()) setup_system_ = frame;
   const bool world = transformation_.starts_with("TRNTYP/WORLD");
   if (!setup_system_) {
     reject_text("CSYS", shown_, "changes the coordinate system within the program", one_system);
@@ -92,7 +95,7 @@ void AptReader::take_setup_system() {
 }
 
 void AptReader::take_transformation() {
-  if (start_ && text_ != transformation_) {
+  if (begun() && text_ != transformation_) {
     reject_text("TRNTYP", shown_, "changes the coordinate system within the program", one_system);
   }
   transformation_ = text_;
@@ -110,7 +113,7 @@ void AptReader::take_matrix_comment() {
   matrix_rows_.push_back(text_);
   if (matrix_rows_.size() < 3) return;
   in_matrix_ = false;
-  if (!start_) first_matrix_rows_ = matrix_rows_;
+  if (!begun()) first_matrix_rows_ = matrix_rows_;
   if (matrix_rows_ == first_matrix_rows_) return;
   reject_text("CATIA0", shown_, "ends a matrix that changes the coordinate system within the program", one_system);
 }
@@ -158,6 +161,7 @@ void AptReader::take_retract() {
   }
   const double way_m = (clearance_->offset_m - clearance_->normal.dot(pose_.tip_m)) / along;
   if (!(way_m > 0.0)) return;
+  lift_m_.reset();
   begin_part_move();
   if (is_second_tool()) return;
   const Pose end = {.tip_m = pose_.tip_m + way_m * pose_.axis, .axis = pose_.axis};
@@ -183,6 +187,7 @@ void AptReader::lose() {
   lost_line_ = line_;
   lost_word_ = word_;
   circle_.reset();
+  lift_m_.reset();
 }
 
 void AptReader::come_back(const Pose& end) {
@@ -201,6 +206,7 @@ void AptReader::come_back(const Pose& end) {
 }
 
 void AptReader::turn_over(const Pose& end) {
+  lift_m_.reset();
   if (is_second_tool()) return;
   made_ = Made::moves;
   assume_once(Once::turned_over,

@@ -58,7 +58,7 @@ void AptReader::mount() {
   const std::optional<double> number = io::parse_number(loaded_.starts_with('T') ? loaded_.substr(1) : loaded_);
   const std::optional<int> whole = number ? whole_tool(*number) : std::nullopt;
   std::string name = loaded_.empty() ? path_tool_ : loaded_;
-  if (whole) name = fmt::format("T{}", *whole);
+  if (whole) tool_ = name = fmt::format("T{}", *whole);
   mount_tool(whole, name.empty() ? std::string("one without a number") : std::move(name));
   skip_statement();
 }
@@ -84,6 +84,7 @@ void AptReader::take_tool_path() {
     return;
   }
   path_tool_ = fields_[2];
+  loaded_.clear();  // its number comes with LOAD
   mount();
 }
 
@@ -138,12 +139,7 @@ void AptReader::take_delay() {
 // Cutter locations are those of the tool's tip: the path stands in the file offset already.
 void AptReader::take_compensation() {
   const bool off = fields_.size() == 1 && (fields_[0] == "OFF" || fields_[0] == "NOMORE");
-  if (!off) {
-    assume_once(Once::compensation,
-                {.what = fmt::format("Path under CUTCOM, from line {} on", line_),
-                 .taken = "that of the tool's centre: the machine compensates for a worn tool alone",
-                 .key = "CUTCOM/OFF"});
-  }
+  compensation_line_ = off ? 0 : line_;
   skip_statement();
 }
 

@@ -68,10 +68,13 @@ void GcodeReader::list_tools(std::string_view statement) {
   } catch (const InvalidInput&) {
     return;  // names no tool
   }
+  const std::optional<OWord> control_word = o_word(words_.compact());
+  if (control_word && control_word->keyword == "endsub" && depth_ > 0) returns_ = true;
   bool changes = false;
   for (const GcodeWords::Word& word : words_.words()) {
     if (word.letter == 't') name_tool(word.number);
     if (word.letter != 'm') continue;
+    if (word.number == 99.0) (depth_ > 0 ? returns_ : ended_) = true;
     changes = changes || word.number == 6.0 || word.number == 16.0;
     ended_ = ended_ || word.number == 2.0 || word.number == 30.0;
   }

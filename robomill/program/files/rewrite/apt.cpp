@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "robomill/io/text.hpp"
@@ -95,6 +96,11 @@ void AptRewriter::note(Statement& statement) {
   statement.takes_speed = statement.takes_feed = modes.passes && word_.starts_with("GO");
   if (statement.says_feed) points_.feed = points_.feed || point;
   if (statement.says_speed) points_.speed = points_.speed || point;
+  const bool feeds =
+      std::ranges::any_of(std::span(job().as_read.blocks).subspan(statement.first_block, statement.blocks),
+                          [](const Block& block) { return block.kind == Block::Kind::feed; });
+  // A hole whose cycle says no feed takes FEDRAT's, which moves behind it cannot change then.
+  statement.breaks_feed = modes.made == AptReader::Made::moves && !modes.cycle_feed && feeds;
   const Move move = move_of(statement);
   if (move.count == 0 || !move.at_feed || modes.made == AptReader::Made::moves) return;
   statement.moves_at_feed = true;
@@ -158,7 +164,7 @@ void AptRewriter::set_axis(std::size_t index, Composed& composed) {
     return;
   }
   const Vector3d from = out_.pose().axis;
-  const Vector3d plain = modes_[index].plain_axis.value_or(from);  // of a position that says none
+  const Vector3d plain = out_.modes().plain_axis.value_or(from);  // of a position that says none
   const Vector3d target = wanted_axis(statement, move);
   const bool stays = !statement.starts && move.count == 0;
   if (count_numbers() < 6) {
@@ -357,11 +363,10 @@ Rewriter::Composed AptRewriter::compose_passed(std::size_t index) const {
   const AptReader::Modes& read = modes_[index - 1];
   const AptReader::Modes held = out_.modes();
   const Carried carried = carried_from(index);
-  if (carried.speed && !same_rate(read.speed_rad_per_s, held.speed_rad_per_s)) {
-    const Spindle direction = job().as_read.blocks[statements()[index].first_block - 1].spindle;
+  if (carried.speed && read.spindle != Spindle::off && !same_rate(read.speed_rad_per_s, held.speed_rad_per_s)) {
     composed.before.push_back(fmt::format("SPINDL/{},RPM,{}",
                                           significant_text(read.speed_rad_per_s / units::rpm, points_.speed),
-                                          direction == Spindle::counterclockwise ? "CCLW" : "CLW"));
+                                          read.spindle == Spindle::counterclockwise ? "CCLW" : "CLW"));
   }
   const bool same_feed = same_rate(read.feed, held.feed) && read.feed_in_inches == held.feed_in_inches &&
                          read.feed_per_revolution == held.feed_per_revolution;
@@ -375,11 +380,11 @@ Rewriter::Composed AptRewriter::compose_passed(std::size_t index) const {
 
 Rewriter::Composed AptRewriter::compose(std::size_t index) {
   const Statement& statement = statements()[index];
-  if (statement.passes) return compose_passed(index);
   split(statement);
+  if (word_ == "MULTAX") multax_ = count_numbers() == 0 || fields_[0].text != "OFF";
+  if (statement.passes) return compose_passed(index);
   Composed composed;
   motions_ = {};
-  if (word_ == "MULTAX") multax_ = count_numbers() == 0 || fields_[0].text != "OFF";
   if (arcs_.contains(index)) {
     compose_opener(index, composed);
     return composed;
