@@ -270,6 +270,12 @@ TEST(Tools, ARewritingLeavesTheOthersAsTheyAre) {
   EXPECT_EQ(rewrite(apt, 1, 0.5, 2.0, "part.apt").text,
             "LOADTL/1\nSPINDL/500,CLW\nFEDRAT/200,MMPM\nGOTO/0,0,0\nGOTO/10,0,0\nSPINDL/1000,RPM,CLW\nFEDRAT/100,MMPM\n"
             "LOADTL/2\nRAPID\nGOTO/0,5,10\nGOTO/0,5,0\nFINI\n");
+  const std::string stopped =
+      "LOADTL/1\nSPINDL/1000,CLW\nFEDRAT/100,MMPM\nGOTO/0,0,0\nGOTO/10,0,0\nSPINDL/OFF\nLOADTL/2\nRAPID\n"
+      "GOTO/0,5,10\nSPINDL/2000,CLW\nGOTO/0,5,0\n";
+  const std::string half = rewrite(stopped, 1, 0.5, 1.0, "part.apt").text;
+  EXPECT_NE(half.find("GOTO/10,0,0\nSPINDL/OFF\nLOADTL/2\n"), std::string::npos) << "no turning in the change\n"
+                                                                                 << half;
 }
 
 TEST(Tools, ARewritingEndsWhereTheNextPartBegins) {

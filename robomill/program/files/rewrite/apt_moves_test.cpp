@@ -35,6 +35,7 @@ TEST(RewriteAptMoves, NothingWantedIsNothingChanged) {
         std::string("GOTO/10,0,5\nFEDRAT/300\nINDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,5,$\n10),ON,(LINE/0,0,5,0,10,5)\n"),
         std::string("GOTO/10,0,0\nFEDRAT/300\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/-10,0,0\nGOTO/-20,0,0\n"),
         std::string("MSYS/0,0,0,1,0,0,0,1,0\nFEDRAT/60\nGOTO/0,0,0\nMSYS/5,0,1,0,1,0,-1,0,0\nGOTO/2,3,4,1,0,0\n"),
+        std::string("GOTO/10,0,0\nFEDRAT/300\nCIRCLE/0,0,0,0,0,1\nGOTO/0,10,0\n\n$$ end\n"),
         std::string("CLRSRF/0,0,1,50\nGOTO/0,0,0\nFEDRAT/60\nGOTO/10,0,0\nRETRCT\nGOHOME\nRAPID\nGOTO/0,0,9\n")}) {
     EXPECT_EQ((Case{.text = text}.rewrite()), text);
   }
@@ -72,6 +73,14 @@ TEST(RewriteAptMoves, AMovedArcBecomesStraightMoves) {
     EXPECT_LT((again.blocks[i].end.tip_m - one.wanted.blocks[i].end.tip_m).norm(), 2e-7);
     EXPECT_NEAR(again.blocks[i].duration_s, one.wanted.blocks[i].duration_s, 1e-3 * one.wanted.blocks[i].duration_s);
   }
+}
+
+// A hole without a feed of its own keeps the FEDRAT that a move behind it shares.
+TEST(RewriteAptMoves, AFeedThatAHoleSharesIsSaidAgainBehindIt) {
+  Case one = {.text = "GOTO/0,0,10\nFEDRAT/100\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/0,0,0\nCYCLE/OFF\nGOTO/9,0,10\n"};
+  one.wanted.blocks.back().duration_s *= 0.5;
+  EXPECT_EQ(one.rewrite(),
+            "GOTO/0,0,10\nFEDRAT/100\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/0,0,0\nCYCLE/OFF\nFEDRAT/200\nGOTO/9,0,10\n");
 }
 
 TEST(RewriteAptMoves, FeedsOfCycles) {
