@@ -153,7 +153,12 @@ void cut(std::vector<Record>& parts, const std::vector<Index>& lags, JoinedRecor
 
 std::string time_column_of(const Record& record, const std::string& given) {
   if (given.empty()) {
-    const auto known = std::ranges::find_if(record.names, is_time_column);
+    // "data.time" and "hit 1/time" of files that have groups, too.
+    const auto is_time = [](std::string_view name) {
+      const std::size_t end = name.find_last_of("./");
+      return is_time_column(name) || (end != std::string_view::npos && is_time_column(name.substr(end + 1)));
+    };
+    const auto known = std::ranges::find_if(record.names, is_time);
     return known == record.names.end() ? std::string() : *known;
   }
   try {

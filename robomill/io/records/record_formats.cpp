@@ -36,8 +36,7 @@ struct UnreadEnding {
   std::string_view ending, what, remedy;
 };
 constexpr UnreadEnding unread_endings[] = {
-    {".tdm", "a LabVIEW TDM file", as_csv},      {".h5", "an HDF5 file", as_csv},
-    {".hdf5", "an HDF5 file", as_csv},           {".mf4", "an ASAM MDF file", as_csv},
+    {".tdm", "a LabVIEW TDM file", as_csv},      {".mf4", "an ASAM MDF file", as_csv},
     {".mdf", "an ASAM MDF file", as_csv},        {".dxd", "a Dewesoft file", as_csv},
     {".d7d", "a Dewesoft file", as_csv},         {".dwd", "a DynoWare file", as_csv},
     {".xls", "a spreadsheet", save_as_csv},      {".xlsx", "a spreadsheet", save_as_csv},

@@ -232,7 +232,7 @@ FileKind kind_of_text(const Beginning& file) {
   return known;
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kinds_by_ending = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 26> kinds_by_ending = {
     {{".ngc", "program"},  {".nc", "program"},  {".gcode", "program"}, {".tap", "program"},       {".apt", "program"},
      {".cls", "program"},  {".cl", "program"},  {".ncl", "program"},   {".aptsource", "program"}, {".uff", "frf"},
      {".unv", "frf"},      {".uf", "frf"},      {".wav", "record"},    {".lvm", "record"},        {".tdms", "record"},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -9,7 +10,6 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/modal/files/hit_files/hit_sets.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -103,7 +103,8 @@ void TapSession::run(const std::stop_token& stop) {
 /// True where there was something.
 bool TapSession::take_files() {
   bool any = false;
-  for (const std::filesystem::path& file : folder_->look(TapHits::most_hits - hits_.size())) {
+  for (const std::filesystem::path& file :
+       folder_->look(TapHits::most_hits - std::min(TapHits::most_hits, hits_.size()))) {
     any = take_record(file) || any;
   }
   return any;
@@ -115,7 +116,7 @@ bool TapSession::take_record(const std::filesystem::path& file) {
     add_hits({file});
     return true;
   }
-  const std::string key = (file.parent_path() / modal::set_key(file)).lexically_normal().string();
+  const std::string key = settings_.key_of(file);
   std::vector<std::filesystem::path>& set = waiting_[key];
   set.push_back(file);
   if (set.size() == settings_.files_of(file)) {
@@ -132,7 +133,7 @@ void TapSession::add_hits(const std::vector<std::filesystem::path>& files) {
   const TapHit record = {.name = name, .files = files, .row = settings_.row(files.front())};
   try {
     const std::vector<modal::Hit> hits = settings_.read(files);
-    if (hits.size() > TapHits::most_hits - hits_.size()) {
+    if (hits.size() + hits_.size() > TapHits::most_hits) {
       throw InvalidInput(name, fmt::format("holds {} hits, and the test has {} of the {} that it may", hits.size(),
                                            hits_.size(), TapHits::most_hits));
     }

@@ -135,13 +135,23 @@ std::string TapSettings::acquisition(bool si) const {
   return out;
 }
 
-std::size_t TapSettings::row_of(const std::filesystem::path& record) const {
+std::optional<std::size_t> TapSettings::row_that_names(const std::filesystem::path& record) const {
   for (std::size_t i = 0; i < named_.size(); ++i) {
     const auto is_it = [&](const std::filesystem::path& file) {
       return file.lexically_normal() == record.lexically_normal();
     };
     if (std::ranges::any_of(named_[i], is_it)) return i;
   }
+  return std::nullopt;
+}
+
+std::string TapSettings::key_of(const std::filesystem::path& file) const {
+  if (const std::optional<std::size_t> row = row_that_names(file)) return fmt::format("row {}", *row);
+  return (file.parent_path() / modal::set_key(file)).lexically_normal().string();
+}
+
+std::size_t TapSettings::row_of(const std::filesystem::path& record) const {
+  if (const std::optional<std::size_t> row = row_that_names(record)) return *row;
   const std::string name = record.stem().string();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!excitation_directions_[i].empty() && has_word(name, axis_of(excitation_directions_[i]))) return i;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class TapSettings {
   [[nodiscard]] std::size_t files_of(const std::filesystem::path& record) const {
     return named_[row_of(record)].size();
   }
+  /// What files of one record have in common: the row that names them, else their folder and names.
+  [[nodiscard]] std::string key_of(const std::filesystem::path& file) const;
   /// Files of one record in the order of their row: as it names them, else the one named as a force first.
   [[nodiscard]] std::vector<std::filesystem::path> in_order(std::vector<std::filesystem::path> files) const;
   /// The row that it is read by, but its file, as TOML.
@@ -58,6 +61,8 @@ class TapSettings {
   struct Setting {
     std::string key, value;
   };
+  /// The row that names a file; none: no row does.
+  [[nodiscard]] std::optional<std::size_t> row_that_names(const std::filesystem::path& record) const;
   [[nodiscard]] std::size_t row_of(const std::filesystem::path& record) const;
   void read_rows(const std::string& text);
   void name_channels();

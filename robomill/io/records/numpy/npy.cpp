@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -63,15 +65,17 @@ class NpyTarget {
     columns_[column](sample) = decode_ != nullptr ? decode_(at) : time_s(at);
   }
 
-  /// From the first: as a number of ticks a date has more digits than a double.
+  /// A date from the begin of its first day on: as a number of ticks it has more digits than a double.
   double time_s(const char* at) {
     constexpr auto no_time = std::numeric_limits<std::int64_t>::min();
     const auto ticks = std::bit_cast<std::int64_t>(number_at(std::string_view(at, 8), 0, 8, field_.type.big_endian));
     if (ticks == no_time) return std::numeric_limits<double>::quiet_NaN();
-    if (!began_) first_ = ticks;
+    if (!began_ && field_.type.kind == 'M') {
+      const auto day = std::max<std::int64_t>(1, std::llround(86400.0 / field_.type.tick_s));
+      zero_ = static_cast<std::uint64_t>(ticks) - static_cast<std::uint64_t>((ticks % day + day) % day);
+    }
     began_ = true;
-    const auto since =
-        std::bit_cast<std::int64_t>(static_cast<std::uint64_t>(ticks) - static_cast<std::uint64_t>(first_));
+    const auto since = std::bit_cast<std::int64_t>(static_cast<std::uint64_t>(ticks) - zero_);
     return field_.type.tick_s * static_cast<double>(since);
   }
 
@@ -79,7 +83,7 @@ class NpyTarget {
   double (*decode_)(const char*);
   MatrixLie lie_ = {};
   bool samples_together_ = true, began_ = false;
-  std::int64_t first_ = 0;
+  std::uint64_t zero_ = 0;  ///< the tick that times count from
   std::size_t column_ = 0;
   Eigen::Index sample_ = 0;
   std::vector<Eigen::VectorXd> columns_;

@@ -111,7 +111,8 @@ TEST(Npy, ReadsTheFieldsOfAStructuredArray) {
 }
 
 // A date in ns has more digits than a double: the steps count.
-TEST(Npy, TimesAreSecondsFromTheFirst) {
+// 14 November 2023, 22:13:20.123 456 789: files of one measurement count from one midnight.
+TEST(Npy, DatesAreSecondsOfTheDay) {
   const Folder folder;
   for (const auto& [unit, ticks] : {std::pair{"ns", 39063U}, {"us", 39U}, {"ms", 4U}, {"s", 2U}}) {
     std::string values;
@@ -120,8 +121,9 @@ TEST(Npy, TimesAreSecondsFromTheFirst) {
     }
     const Record record = read(folder, npy(fmt::format("[('time', '>M8[{}]'), ('x', '<f8')]", unit), "(5,)", values));
     const double s = unit == std::string("ns") ? 1e-9 : unit == std::string("us") ? 1e-6 : unit[0] == 'm' ? 1e-3 : 1.0;
-    EXPECT_NEAR(record.sample_rate_hz * s * ticks, 1.0, 1e-12) << unit;
-    EXPECT_EQ(record.column("time")(0), 0.0);
+    EXPECT_NEAR(record.sample_rate_hz * s * ticks, 1.0, 1e-6) << unit;
+    const auto day = static_cast<std::uint64_t>(std::llround(86400.0 / s));
+    EXPECT_NEAR(record.column("time")(0), s * static_cast<double>(1'700'000'000'123'456'789U % day), 1e-9) << unit;
   }
 }
 

@@ -153,6 +153,17 @@ TEST(Npz, TimesCountAndChannelsOfAnotherRateAreLeftOut) {
   EXPECT_NE(uneven.left_out[0].find("the time does not run evenly: from 2 s to 5 s"), std::string::npos);
 }
 
+// A rounded time is no rate, but it is in s all the same.
+TEST(Npz, ARoundedTimeIsInSecondsToo) {
+  const Folder folder;
+  const Record record =
+      read_record(folder.file("a.npz", zip({{"time_ms.npy", npy("'<f8'", "(6,)", doubles({0, 0, 1, 1, 2, 2}))},
+                                            {"x.npy", npy("'<f8'", "(6,)", doubles({1, 2, 3, 4, 5, 6}))}},
+                                           0)));
+  EXPECT_EQ(record.column("time_ms")(5), 2e-3);
+  EXPECT_EQ(record.unit(0), "s");
+}
+
 TEST(Npz, NamesAndUnitsOfAMatrixStandBesideIt) {
   const Folder folder;
   const std::vector<Member> members = {{"data.npy", npy("'<f8'", "(3, 2)", doubles({1, 10, 2, 20, 3, 30}))},

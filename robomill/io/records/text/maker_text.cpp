@@ -15,6 +15,7 @@
 #include "robomill/io/si.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
 namespace {
@@ -51,6 +52,7 @@ std::string_view take_text_line(std::string_view& rest) {
 struct TextBlock {
   std::string name = {}, unit = {}, x_unit = {}, function = {};
   bool is_complex = false;
+  double stated_samples = 0.0;  ///< 0: the header does not say it
   std::size_t header_lines = 0;
   std::size_t begin_line = 0;     ///< of the numbers, from 0
   std::string_view numbers = {};  ///< from the line there on, up to the next block
@@ -68,6 +70,8 @@ void take_key(const KeyLine& said, TextBlock& block) {
     block.unit = value;
   } else if (key == class_key || key == "type of function" || key == "function") {
     block.function = lowered(value);
+  } else if (key == "x-axis size") {
+    block.stated_samples = parse_number(value).value_or(0.0);
   } else if (key == "data type") {
     block.is_complex = lowered(value).find("complex") != std::string::npos;
   } else if (key == header_size_key) {
@@ -108,7 +112,7 @@ class BlockReader {
     for (const std::size_t place : taken.places) {
       out.columns.emplace_back(
           Eigen::Map<const Eigen::VectorXd>(columns_[place].data(), static_cast<Eigen::Index>(taken.samples)));
-      columns_[place] = {};
+      columns_[place] = std::vector<double>();
     }
     out.notes.push_back(
         fmt::format("{}: read as a text of {}, by its published description, which is untried on a "
@@ -166,9 +170,7 @@ class BlockReader {
     if (block.is_complex) channel.fault = "complex numbers";
     columns_.emplace_back();
     if (channel.fault.empty()) {
-      // Lines before it keep errors at their place.
-      const Table table =
-          parse_table(std::string(block.begin_line, '\n') + std::string(block.numbers), path_.string(), notes);
+      Table table = table_of(block, notes);
       const std::size_t expected = maker_ == TextMaker::pulse ? 3 : 2;
       if (table.columns.size() != expected) {
         throw InvalidInput(fmt::format("{}:{}", path_.string(), block.begin_line + 1),
@@ -181,9 +183,23 @@ class BlockReader {
           round_15(sample_rate_of(times, fmt::format("{}:{}", path_.string(), block.begin_line + 1)) / s);
       channel.start = {.is_known = true, .s = s * x.front()};
       channel.samples = x.size();
-      columns_.back() = table.columns[expected - 1];
+      if (static_cast<double>(x.size()) < block.stated_samples) {
+        notes.push_back(fmt::format("{}{} holds {} of the {:.0f} samples that its header states", warning_label,
+                                    channel.name, x.size(), block.stated_samples));
+      }
+      columns_.back() = std::move(table.columns[expected - 1]);
     }
     channels_.push_back(std::move(channel));
+  }
+
+  [[nodiscard]] Table table_of(const TextBlock& block, std::vector<std::string>& notes) const {
+    const std::string numbers(block.numbers);
+    try {
+      return parse_table(numbers, path_.string(), notes);
+    } catch (const InvalidInput&) {
+      // Lines before it set errors at their place.
+      return parse_table(std::string(block.begin_line, '\n') + numbers, path_.string(), notes);
+    }
   }
 
   std::filesystem::path path_;

@@ -117,6 +117,9 @@ TEST(Pulse, ReadsBlocksOfTimeSignals) {
   EXPECT_NE(record.notes[1].find("untried on a real file"), std::string::npos);
   const Record in_ms = read_record(folder.file("a.txt", pulse("Hammer", "N", "ms", 0.25, {0, 5, 1})));
   EXPECT_EQ(in_ms.sample_rate_hz, 4000.0);
+  const std::string cut_off = pulse("Hammer", "N", "s", 0.25, {0, 5, 1, 2});
+  const Record part = read_record(folder.file("a.txt", cut_off.substr(0, cut_off.rfind("4\t"))));
+  EXPECT_NE(part.notes.front().find("Hammer holds 3 of the 4 samples that its header states"), std::string::npos);
   const auto source = open_samples(folder.file("b.txt", content), {.channels = {"Tip"}});
   SampleBlock block;
   ASSERT_TRUE(source->next(10, block));

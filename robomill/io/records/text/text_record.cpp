@@ -120,7 +120,7 @@ Record read_text_record(const std::filesystem::path& path) {
   for (std::vector<double>& column : table.columns) {
     record.columns.emplace_back(
         Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size())));
-    column = {};
+    column = std::vector<double>();
   }
   const double stated = of_dynoware ? number_at_key(head, "Samples per channel") : 0.0;
   const auto there = static_cast<double>(record.columns.front().size());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -135,6 +136,7 @@ class TreeReader {
       node.columns.front() *= s;
       record_.notes.push_back(fmt::format("{}: {} is converted to s", file_, node.name));
     }
+    in_s_.push_back(place);
     TreeTimes times{.node = place, .samples = node.columns.front().size(), .start_s = node.columns.front()(0)};
     if (rounded_sample_rate_of(node.columns.front()) > 0.0) {
       record_.notes.push_back(fmt::format("{}: column {} is rounded and does not count as the time", file_, node.name));
@@ -171,7 +173,12 @@ class TreeReader {
   }
 
   /// Also of an axis beside the values: x_values.increment, as Testlab writes it.
-  [[nodiscard]] double stated_rate_at(std::size_t group) const {
+  [[nodiscard]] double stated_rate_at(std::size_t group) {
+    const auto known = stated_rates_hz_.find(group);
+    if (known == stated_rates_hz_.end()) return stated_rates_hz_[group] = find_stated_rate(group);
+    return known->second;
+  }
+  [[nodiscard]] double find_stated_rate(std::size_t group) const {
     if (const double rate_hz = stated_rate(group); rate_hz > 0.0) return rate_hz;
     for (const std::size_t child : children_[group]) {
       const std::string word = plain_word(nodes_[child].key);
@@ -262,7 +269,7 @@ class TreeReader {
     if (channel.fault.empty()) find_rate(place, channel);
     const std::vector<std::string> names = names_of(place);
     std::vector<std::string> units = units_of(place);
-    if (time_word(node.key) > 0.0 && times_in(place, node.columns.front().size()) != nullptr) units = {"s"};
+    if (std::ranges::find(in_s_, place) != in_s_.end()) units = {"s"};
     if (units.size() != 1 && units.size() != node.columns.size()) units.clear();
     for (std::size_t i = 0; i < node.columns.size(); ++i) {
       places_.emplace_back(place, i);
@@ -320,6 +327,8 @@ class TreeReader {
   std::string file_, own_time_;
   std::vector<std::vector<std::size_t>> children_;
   std::vector<TreeTimes> times_;
+  std::vector<std::size_t> in_s_;                  ///< times that are in s by now
+  std::map<std::size_t, double> stated_rates_hz_;  ///< of groups that have been looked at
   std::vector<FileChannel> channels_;
   std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< node and column of each
   std::size_t last_scale_ = none;

@@ -22,6 +22,7 @@ namespace robomill::io {
 namespace {
 
 constexpr int deepest_group = 32;
+constexpr const char* other_type = "values of a type that is not read";
 constexpr hsize_t most_set_texts = 4096, most_references = 4096;
 constexpr std::size_t longest_set_text = 4096;
 
@@ -90,6 +91,8 @@ class Hdf5TreeReader {
   void read_object(hid_t object, std::size_t parent, const std::string& name, const std::string& key, int depth) {
     if (H5Iget_type(object) == H5I_DATASET) {
       read_set(object, parent, name, key, depth);
+    } else if (of_matlab_ && H5Iget_type(object) == H5I_GROUP && H5Aexists(object, "MATLAB_sparse") > 0) {
+      add_fault(parent, name, key, "a sparse matrix");
     } else if (H5Iget_type(object) == H5I_GROUP) {
       const std::size_t place = builder_.add_group(parent, name, key);
       add_attributes(object, place, name);
@@ -111,6 +114,8 @@ class Hdf5TreeReader {
       case H5T_FLOAT:
         if (matlab_class == "char") {
           builder_.add_texts(parent, name, key, {letters_of(set, sides)});
+        } else if (of_matlab_ && H5Aexists(set, "MATLAB_object_decode") > 0) {
+          add_fault(parent, name, key, "an object of MATLAB");
         } else {
           read_numbers(set, nullptr, parent, name, key, sides);
         }
@@ -125,12 +130,12 @@ class Hdf5TreeReader {
         if (of_matlab_) read_references(set, parent, name, key, sides, matlab_class == "cell", depth);
         break;
       default:
-        builder_.add({.parent = parent,
-                      .kind = FileNode::Kind::numbers,
-                      .name = name,
-                      .key = key,
-                      .fault = "values of a type that is not read"});
+        add_fault(parent, name, key, other_type);
     }
+  }
+
+  void add_fault(std::size_t parent, const std::string& name, const std::string& key, const char* fault) {
+    builder_.add({.parent = parent, .kind = FileNode::Kind::numbers, .name = name, .key = key, .fault = fault});
   }
 
   [[nodiscard]] static std::string class_of(hid_t set) {
@@ -193,8 +198,7 @@ class Hdf5TreeReader {
                             ((H5Tget_member_index(type, "real") >= 0 && H5Tget_member_index(type, "imag") >= 0) ||
                              (H5Tget_member_index(type, "r") >= 0 && H5Tget_member_index(type, "i") >= 0));
     if (is_complex) {
-      builder_.add(
-          {.parent = parent, .kind = FileNode::Kind::numbers, .name = name, .key = key, .fault = "complex numbers"});
+      add_fault(parent, name, key, "complex numbers");
       return;
     }
     const std::size_t place = builder_.add_group(parent, name, key);
@@ -205,7 +209,11 @@ class Hdf5TreeReader {
       const std::string field = member;
       H5free_memory(member);
       const Hdf5Id stored(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
-      if (is_plain_number(stored.get())) read_numbers(set, field.c_str(), place, path_of(name, field), field, sides);
+      if (is_plain_number(stored.get())) {
+        read_numbers(set, field.c_str(), place, path_of(name, field), field, sides);
+      } else {
+        add_fault(place, path_of(name, field), field, other_type);
+      }
     }
   }
 

@@ -87,7 +87,8 @@ FileTree unpack_tree(std::string_view bytes, FileTree::Naming naming) {
     PackedSizes sizes = {};
     for (std::uint64_t& size : sizes) size = from.number();
     const auto [parent, kind, by_rows, columns, samples, texts] = sizes;
-    if (parent >= out.nodes.size() || kind > 2 || columns > bytes.size() || texts > bytes.size()) {
+    if (parent >= out.nodes.size() || kind > 2 || columns > bytes.size() || texts > bytes.size() ||
+        (columns > 0 && samples == 0)) {
       throw std::length_error("of no kind");
     }
     FileNode node{.parent = static_cast<std::size_t>(parent), .kind = static_cast<FileNode::Kind>(kind)};

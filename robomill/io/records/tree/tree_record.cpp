@@ -27,7 +27,7 @@ Record record_of_packed(std::string packed, FileTree::Naming naming, const std::
   } catch (const std::length_error&) {
     throw InvalidInput(path.string(), damaged_file);
   }
-  packed = {};
+  packed = std::string();
   return record_of_tree(std::move(tree), path, time);
 }
 
@@ -47,7 +47,7 @@ Record read_hdf5_record(const std::filesystem::path& path, const std::string& ti
     return pack_tree(read_hdf5_tree(bytes, place, false));
   };
   std::string packed = read_in_child(path, content, {.fault = "is a damaged HDF5 file"}, read);
-  content = {};
+  content = std::string();
   return record_of_packed(std::move(packed), FileTree::Naming::python, path, time);
 }
 
@@ -59,7 +59,7 @@ Record read_mat_record(const std::filesystem::path& path, const std::string& tim
     return pack_tree(of_hdf5 ? read_hdf5_tree(bytes, place, true) : read_mat_tree(place, bytes.size(), variables));
   };
   std::string packed = read_in_child(path, content, {.by_name = !of_hdf5, .fault = damaged_mat}, read);
-  content = {};
+  content = std::string();
   return record_of_packed(std::move(packed), FileTree::Naming::matlab, path, time);
 }
 

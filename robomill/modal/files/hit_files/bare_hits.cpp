@@ -165,7 +165,9 @@ HitsFile read_lines(const fs::path& folder, const FoundHits& found, const std::s
 }  // namespace
 
 HitsFile read_bare_hits(const std::vector<fs::path>& records) {
-  const fs::path folder = records.front().parent_path();
+  if (records.empty()) throw InvalidInput("records", "none is given");
+  const fs::path parent = records.front().parent_path();
+  const fs::path folder = parent.empty() ? fs::path(".") : parent;
   for (const fs::path& record : records) {
     if (std::ranges::count(records, record) > 1) throw InvalidInput(record.string(), "is given twice");
   }

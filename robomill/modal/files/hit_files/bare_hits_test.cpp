@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -59,6 +60,16 @@ class BareHitsTest : public ::testing::Test {
 
 bool has(const std::vector<std::string>& texts, const std::string& one) {
   return std::ranges::find(texts, one) != texts.end();
+}
+
+TEST_F(BareHitsTest, ARecordOfTheFolderThatRobomillRunsIn) {
+  const std::filesystem::path file = folder_.file("hit.csv", Record{}.text());
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(file.parent_path());
+  const HitsFile read = read_bare_hits({"hit.csv"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(read.hits.size(), 1U);
+  EXPECT_NE(test::rejection([] { static_cast<void>(read_bare_hits({})); }).find("none is given"), std::string::npos);
 }
 
 TEST_F(BareHitsTest, NamesUnitsAndTimeAreEnough) {

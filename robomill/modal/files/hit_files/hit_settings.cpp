@@ -88,7 +88,8 @@ class AcquisitionSettings {
   }
   void rate() {
     const ColumnGuess* const time = hit_.first(Role::time);
-    if (time != nullptr && hit_.time.empty() && (time->si_per_unit != 1.0 || hit_.guess.rounded_time)) {
+    if (hit_.sample_rate_hz > 0.0 && time != nullptr && hit_.time.empty() &&
+        (time->si_per_unit != 1.0 || hit_.guess.rounded_time)) {
       set("sample_rate_hz", fmt::format("{:.9g}", hit_.sample_rate_hz),
           fmt::format("guessed from the column {}, which is {}: check", time->name,
                       hit_.guess.rounded_time ? "rounded" : "not in s"));
