@@ -36,8 +36,7 @@ struct UnreadEnding {
   std::string_view ending, what, remedy;
 };
 constexpr UnreadEnding unread_endings[] = {
-    {".tdm", "a LabVIEW TDM file", as_csv},      {".h5", "an HDF5 file", as_csv},
-    {".hdf5", "an HDF5 file", as_csv},           {".mf4", "an ASAM MDF file", as_csv},
+    {".tdm", "a LabVIEW TDM file", as_csv},      {".mf4", "an ASAM MDF file", as_csv},
     {".mdf", "an ASAM MDF file", as_csv},        {".dxd", "a Dewesoft file", as_csv},
     {".d7d", "a Dewesoft file", as_csv},         {".dwd", "a DynoWare file", as_csv},
     {".xls", "a spreadsheet", save_as_csv},      {".xlsx", "a spreadsheet", save_as_csv},
@@ -57,9 +56,14 @@ bool is_read_as_record(const std::filesystem::path& path) {
   return record_format_of(path) != RecordFormat::none;
 }
 
-std::string record_endings() {
+std::vector<std::string_view> record_endings() {
   std::vector<std::string_view> endings;
   for (const RecordEnding& each : record_ending_list) endings.push_back(each.ending);
+  return endings;
+}
+
+std::string record_endings_text() {
+  std::vector<std::string_view> endings = record_endings();
   const std::string_view last = endings.back();
   endings.pop_back();
   return fmt::format("{} and {}", fmt::join(endings, ", "), last);
