@@ -45,17 +45,20 @@ Verb init_verb() {
 }
 
 std::vector<VerbOption> monitor_options() {
-  return {plain_option("input",
-                       "a recording (.wav .csv .txt .mat .uff .h5 .npy .npz .lvm .tdms), - for standard input, or "
-                       "mqtt://HOST:PORT/TOPIC (mqtts:// with TLS); default: mqtt.topic of monitor.toml"),
-          word_option("format", "of standard input, or of a file whatever its ending (default: auto)",
-                      {"auto", "f32", "i16", "csv"}),
-          flag_option("live", "do not keep standard input waiting: leave out hops that come too fast"),
-          flag_option("every_window", "an event each hop, not only on change"),
-          flag_option("watch", "level, score, state and spectrum on standard error"),
-          plain_option("record", "a folder for the seconds before each alarm, as WAV", Takes::new_folder),
-          whole_option("metrics_port", "answer GET /metrics on loopback; 0: any port that is free", 0, 65535),
-          positive_option("seconds", "process so much of the stream, then end", "s")};
+  return {
+      plain_option("input",
+                   "a recording (.wav .csv .txt .mat .uff .h5 .npy .npz .lvm .tdms; several times where its channels "
+                   "are in files of their own), - for standard input, or mqtt://HOST:PORT/TOPIC (mqtts:// with "
+                   "TLS); default: mqtt.topic of monitor.toml",
+                   Takes::files),
+      word_option("format", "of standard input, or of a file whatever its ending (default: auto)",
+                  {"auto", "f32", "i16", "csv"}),
+      flag_option("live", "do not keep standard input waiting: leave out hops that come too fast"),
+      flag_option("every_window", "an event each hop, not only on change"),
+      flag_option("watch", "level, score, state and spectrum on standard error"),
+      plain_option("record", "a folder for the seconds before each alarm, as WAV", Takes::new_folder),
+      whole_option("metrics_port", "answer GET /metrics on loopback; 0: any port that is free", 0, 65535),
+      positive_option("seconds", "process so much of the stream, then end", "s")};
 }
 
 Verb monitor_verb() {

@@ -25,6 +25,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/usual_ranges.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/inputs.hpp"
@@ -61,10 +62,33 @@ bool is_file(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
+/// Samples of several files, whose channels are apart. Formats that are read block by block are not joined: a recording
+/// of any length takes the same memory.
+void open_files(const jobs::VerbJob& job, const monitor::MonitorFile& file, Input& input) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& place : job.texts("input")) {
+    monitor::MqttSettings unused;
+    if (place == "-" || monitor::parse_mqtt_address(place, unused)) {
+      throw InvalidInput("--input", place + " is a stream, and stands beside others", "Files alone are joined");
+    }
+    if (job.has("format")) throw InvalidInput("--format", "is of one input, and --input names several");
+    if (io::is_read_as_record(place) && std::filesystem::exists(place) && !io::is_held_whole(place)) {
+      throw InvalidInput(place, "is read block by block, and joined with another file it would have to be held whole",
+                         "Write all channels into one WAV or one table, or into files of .mat, .h5, .npz or .tdms");
+    }
+    files.emplace_back(place);
+    input.name += (input.name.empty() ? "" : " + ") + place;
+  }
+  input.source = io::open_samples(files, file.columns);
+}
+
 Input open_input(const jobs::VerbJob& job, monitor::MonitorFile& file, const std::atomic<bool>& ended) {
   Input input;
-  const std::string place = job.text("input");
-  input.is_stream = place.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(place, file.mqtt);
+  const std::vector<std::string> places = job.texts("input");
+  const std::string place = places.empty() ? std::string() : places.front();
+  const bool several = places.size() > 1;
+  input.is_stream =
+      place.empty() ? !file.mqtt.topic.empty() : !several && monitor::parse_mqtt_address(place, file.mqtt);
   if (input.is_stream) {
     input.by_clock = true;
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
@@ -79,7 +103,9 @@ Input open_input(const jobs::VerbJob& job, monitor::MonitorFile& file, const std
                        "Give a recording, - for standard input, or mqtt://HOST/TOPIC");
   }
   const RawFormat format = job.word("format", raw_formats).value_or(RawFormat::automatic);
-  if (place == "-") {
+  if (several) {
+    open_files(job, file, input);
+  } else if (place == "-") {
     input.name = "standard input";
     input.by_clock = !is_file(STDIN_FILENO);
     input.can_wait = !job.flag("live");

@@ -1,6 +1,7 @@
 // robomill monitor as a user runs it on a recording.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "monitor/test_monitor.hpp"
+#include "robomill/io/records/mat.hpp"
 #include "robomill/io/sample_source.hpp"
 
 namespace robomill::app {
@@ -41,6 +43,37 @@ TEST_F(MonitorVerb, DetectsChatterInARecording) {
   EXPECT_EQ(report["monitor"]["decision_count"], 320);
   EXPECT_EQ(report["monitor"]["events"].size(), events().size());
   EXPECT_FALSE(report["monitor"]["spectrogram"].is_null());
+}
+
+// Channels in files of their own, of a format that is held whole; others would no longer take the same memory at any
+// length.
+TEST_F(MonitorVerb, JoinsChannelsThatAreApart) {
+  const std::vector<float> samples = cut(6.0, true);
+  const auto put = [&](const char* name, double factor) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(samples.size()));
+    for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = factor * samples[static_cast<std::size_t>(i)];
+    io::write_mat(folder_.at(std::string(name) + ".mat"),
+                  {{.name = name, .re = values}, {.name = "fs", .re = Eigen::MatrixXd::Constant(1, 1, rate_hz)}});
+  };
+  put("ax", 1.0);
+  put("ay", 0.5);
+  folder_.file("two.toml", "[signal]\nchannels = [\"ax\", \"ay\"]\n[process]\nspindle_speed_rpm = 3000\nteeth = 2\n");
+  const Ended run = robomill("monitor two.toml --input ax.mat --input ay.mat -o events.jsonl");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("ax.mat + ay.mat processed"), std::string::npos) << run.out;
+  ASSERT_FALSE(first_alarm().is_null()) << run.out;
+  EXPECT_NEAR(first_alarm()["chatter_frequency_hz"].get<double>(), chatter_hz, 2.0);
+  wav("x.wav", cut(0.5, false));
+  const auto says = [&](const std::string& options, const std::string& part) {
+    const Ended rejected = robomill("monitor two.toml --input ax.mat " + options);
+    EXPECT_EQ(rejected.exit, 1) << options;
+    EXPECT_NE(rejected.err.find(part), std::string::npos) << rejected.err;
+  };
+  says("--input x.wav", "x.wav: is read block by block, and joined with another file it would have to be held whole");
+  says("--input -", "- is a stream, and stands beside others");
+  says("--input mqtt://host/topic", "is a stream, and stands beside others");
+  says("--input ay.mat --format f32", "--format: is of one input");
+  says("--input notes.pdf", "notes.pdf");
 }
 
 // 683 Hz at 3000 rpm with two teeth: tooth passing 100 Hz, so k = 7 gives 60 * 683 / (2 * 7) rpm; mode 2 stands there.

@@ -12,14 +12,16 @@ void add_assumed(std::vector<Assumption>& to, const std::vector<Assumption>& mor
   }
 }
 
+std::string assumption_text(const Assumption& one) {
+  std::string line = one.what + ": " + one.taken;
+  if (!one.key.empty()) line += " (" + one.key + (one.file.empty() ? "" : " of " + one.file) + ")";
+  return line;
+}
+
 std::string assumed_text(const std::vector<Assumption>& assumed) {
   if (assumed.empty()) return {};
   std::string out = "Assumed, because not given:\n";
-  for (const Assumption& one : assumed) {
-    std::string line = one.what + ": " + one.taken;
-    if (!one.key.empty()) line += " (" + one.key + (one.file.empty() ? "" : " of " + one.file) + ")";
-    out += "  " + printable(line) + "\n";
-  }
+  for (const Assumption& one : assumed) out += "  " + printable(assumption_text(one)) + "\n";
   return out;
 }
 

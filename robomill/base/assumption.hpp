@@ -20,6 +20,9 @@ struct Assumption {
 /// Adds what the list does not hold yet: two stages may read one file.
 ROBOMILL_API void add_assumed(std::vector<Assumption>& to, const std::vector<Assumption>& more);
 
+/// "Teeth of the cutter: 4 (--teeth)"
+[[nodiscard]] ROBOMILL_API std::string assumption_text(const Assumption& one);
+
 /// A heading and a line each, as a terminal may have them; empty for an empty list.
 [[nodiscard]] ROBOMILL_API std::string assumed_text(const std::vector<Assumption>& assumed);
 

@@ -10,6 +10,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
@@ -28,6 +29,39 @@ struct Extent {
 
 std::string file_name(const Record& record) {
   return record.file.filename().string();
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+bool has_name(const Record& record, std::string_view name) {
+  return !name.empty() && std::ranges::find(record.names, name) != record.names.end();
+}
+
+std::string file_names(const std::vector<Record>& parts) {
+  std::string out;
+  for (const Record& part : parts) out += (out.empty() ? "" : ", ") + file_name(part);
+  return out;
+}
+
+/// "force.txt has Time, Hammer; accel.txt has 2 columns"
+std::string columns_of(const std::vector<Record>& parts) {
+  std::string out;
+  for (const Record& part : parts) {
+    std::string names;
+    for (const std::string& name : part.names) {
+      if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+    }
+    if (names.empty()) names = fmt::format("{} columns", part.columns.size());
+    out += fmt::format("{}{} has {}", out.empty() ? "" : "; ", file_name(part), names);
+  }
+  return out;
+}
+
+InvalidInput ambiguous(const std::vector<Record>& parts, const std::string& text, const std::string& rule) {
+  return InvalidInput(parts.front().file.string(), rule,
+                      fmt::format("Write the file before it: \"{}:{}\"", file_name(parts.back()), text));
 }
 
 Extent extent_of(const Record& record, const std::string& given_time) {
@@ -59,8 +93,7 @@ void require_one_rate(const std::vector<Record>& parts, const std::vector<Extent
       throw InvalidInput(
           parts[i].file.string(),
           fmt::format("was sampled at {:.6g} Hz, and {} at {:.6g} Hz", b.rate_hz, file_name(parts[j]), a.rate_hz),
-          "Force and responses of one hit are recorded together, at one rate; do the files belong "
-          "together?");
+          "Columns of one measurement are recorded together, at one rate; do the files belong together?");
     }
   }
 }
@@ -95,9 +128,8 @@ std::vector<Index> lags_of(const std::vector<Record>& parts, const std::vector<E
   constexpr double most_beside = 0.05;  // samples
   std::vector<Index> lags(parts.size(), 0);
   if (!std::ranges::all_of(extents, [](const Extent& extent) { return extent.begin_s.has_value(); })) {
-    std::string names;
-    for (const Record& part : parts) names += (names.empty() ? "" : ", ") + file_name(part);
-    out.notes.push_back(names + " are taken to begin at the same time: not all of them have a column of time");
+    out.notes.push_back(file_names(parts) +
+                        " are taken to begin at the same time: not all of them have a column of time");
     return lags;
   }
   const auto later = [](const Extent& a, const Extent& b) { return *a.begin_s < *b.begin_s; };
@@ -150,6 +182,56 @@ void cut(std::vector<Record>& parts, const std::vector<Index>& lags, JoinedRecor
 }
 
 }  // namespace
+
+void read_record_files(TomlFile& file, const std::string& key, std::vector<std::filesystem::path>& out) {
+  if (!file.paths(key, out)) return;
+  if (out.empty()) throw file.reject(key, "must name a file");
+  for (auto path = out.begin(); path != out.end(); ++path) {
+    if (!path->has_filename()) throw file.reject(key, "must name a file");
+    if (std::find(out.begin(), path, *path) == path) continue;
+    throw file.reject(key, "names a file twice", "Several columns of one file need it once");
+  }
+}
+
+InvalidInput no_column(const std::vector<Record>& parts, std::string_view what) {
+  return InvalidInput(file_names(parts), fmt::format("have no column {}", what), columns_of(parts));
+}
+
+PartColumn find_column(const std::vector<Record>& parts, const std::string& text, std::optional<std::size_t> own) {
+  if (parts.size() == 1) return {.part = 0, .place = parts.front().place(text)};
+  std::vector<std::size_t> having;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string prefix = file_name(parts[i]) + ":";
+    if (text.starts_with(prefix) && text.size() > prefix.size() && !has_name(parts[i], text)) {
+      return {.part = i, .place = parts[i].place(text.substr(prefix.size()))};
+    }
+    if (has_name(parts[i], text)) having.push_back(i);
+  }
+  if (having.size() == 1) return {.part = having.front(), .place = parts[having.front()].place(text)};
+  if (having.size() > 1) {
+    if (!own || !has_name(parts[*own], text)) {
+      throw ambiguous(parts, text, fmt::format("has a column {}, as another of its files has", text));
+    }
+    return {.part = *own, .place = parts[*own].place(text)};
+  }
+  if (is_number(text)) {
+    if (!own) throw ambiguous(parts, text, fmt::format("column {} may be of any of the files", text));
+    return {.part = *own, .place = parts[*own].place(text)};
+  }
+  throw no_column(parts, text);
+}
+
+std::string column_name(const std::vector<Record>& parts, const PartColumn& column, std::optional<std::size_t> own) {
+  const Record& record = parts[column.part];
+  std::string name = column.place < record.names.size() ? record.names[column.place] : std::string();
+  // Of columns of one name only the number tells which.
+  if (name.empty() || std::ranges::count(record.names, name) > 1) name = std::to_string(column.place + 1);
+  if (parts.size() == 1) return name;
+  const bool elsewhere = std::ranges::any_of(
+      parts, [&](const Record& other) { return &other != &record && (is_number(name) || has_name(other, name)); });
+  if (!elsewhere || own == column.part) return name;
+  return file_name(record) + ":" + name;
+}
 
 std::string time_column_of(const Record& record, const std::string& given) {
   if (given.empty()) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
@@ -99,6 +101,35 @@ TEST_F(JoinedRecordsTest, ThreeFilesAreJoinedToo) {
   EXPECT_EQ(joined.parts[1].columns[1](0), 0.0);
   EXPECT_EQ(joined.parts[2].columns[1](0), 5.0);
   EXPECT_EQ(joined.parts[2].columns[1].size(), 290);
+}
+
+TEST_F(JoinedRecordsTest, FindsColumnsByNameFileAndNumber) {
+  const std::vector<Record> parts = {read_record(folder_.file("a.csv", "time_s,force,x\n0,1,2\n1,3,4\n2,5,6\n")),
+                                     read_record(folder_.file("b.csv", "time_s,acc,x\n0,1,2\n1,3,4\n2,5,6\n"))};
+  EXPECT_EQ(find_column(parts, "force"), (PartColumn{0, 1}));
+  EXPECT_EQ(find_column(parts, "acc"), (PartColumn{1, 1}));
+  EXPECT_EQ(find_column(parts, "b.csv:x"), (PartColumn{1, 2}));
+  EXPECT_EQ(find_column(parts, "b.csv:2"), (PartColumn{1, 1}));
+  EXPECT_EQ(find_column(parts, "x", 1), (PartColumn{1, 2}));
+  EXPECT_EQ(find_column(parts, "3", 0), (PartColumn{0, 2}));
+  const auto says = [&](const std::string& text, const std::string& part) {
+    const std::string said = test::rejection([&] { static_cast<void>(find_column(parts, text)); });
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  };
+  says("x", "has a column x, as another of its files has. Write the file before it: \"b.csv:x\"");
+  says("2", "column 2 may be of any of the files");
+  says("y", "a.csv, b.csv: have no column y. a.csv has time_s, force, x; b.csv has time_s, acc, x");
+  says("b.csv:y", "b.csv: has no column y");
+  // Its name finds each column again, whichever file is its own.
+  for (const std::optional<std::size_t> own :
+       {std::optional<std::size_t>(), std::optional<std::size_t>(0), std::optional<std::size_t>(1)}) {
+    for (std::size_t part = 0; part < 2; ++part) {
+      for (std::size_t place = 0; place < 3; ++place) {
+        const PartColumn column{part, place};
+        EXPECT_EQ(find_column(parts, column_name(parts, column, own), own), column) << part << place;
+      }
+    }
+  }
 }
 
 // Any two records are joined or rejected: what comes out has one length and one rate.

@@ -97,38 +97,6 @@ class RawSource : public SampleSource {
   std::vector<std::size_t> pick_;
 };
 
-/// Of formats that are read whole.
-class RecordSource : public SampleSource {
- public:
-  RecordSource(const std::filesystem::path& path, const SampleColumns& columns) {
-    Record record = read_record(path, {.time = {}, .scale = columns.scale});
-    sample_rate_hz_ = record.sample_rate_hz;
-    notes_ = record.notes;
-    check_rate(sample_rate_hz_, columns.sample_rate_hz, std::max(1e-3, record.rate_error), path.string());
-    const std::vector<std::size_t> pick =
-        pick_columns(columns, record.names, record.columns.size(), path.string(), record.left_out);
-    for (const std::size_t column : pick) columns_.push_back(std::move(record.columns[column]));
-    for (const Eigen::VectorXd& column : columns_) {
-      if (column.size() != columns_.front().size()) {
-        throw InvalidInput(path.string(), "its channels have different numbers of samples");
-      }
-    }
-  }
-
-  bool next(std::size_t frames, SampleBlock& block) override {
-    block.samples.clear();
-    const Eigen::Index end = std::min(columns_.front().size(), at_ + static_cast<Eigen::Index>(frames));
-    for (; at_ < end; ++at_) {
-      for (const Eigen::VectorXd& column : columns_) block.samples.push_back(static_cast<float>(column(at_)));
-    }
-    return !block.samples.empty();
-  }
-
- private:
-  std::vector<Eigen::VectorXd> columns_;
-  Eigen::Index at_ = 0;
-};
-
 bool is_text(std::string_view bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   return std::all_of(bytes.begin(), bytes.end(), [](char letter) {
@@ -276,29 +244,32 @@ std::unique_ptr<SampleSource> raw_source(std::unique_ptr<ByteReader> bytes, cons
   return std::make_unique<RawSource>(std::move(bytes), columns, where, is_int16);
 }
 
-std::unique_ptr<SampleSource> record_source(const std::filesystem::path& path, const SampleColumns& columns) {
-  return std::make_unique<RecordSource>(path, columns);
+bool is_held_whole(const std::filesystem::path& path) {
+  switch (record_format_of(path)) {
+    case RecordFormat::none:
+    case RecordFormat::wav:
+      return false;
+    case RecordFormat::text:
+    case RecordFormat::lvm:  // without headers it is a table
+      return is_lvm(path) || text_maker_of(path) != TextMaker::none;
+    default:
+      return true;
+  }
 }
 
 std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path, const SampleColumns& columns,
                                            RawFormat format, const std::atomic<bool>* stop) {
   columns.validate();
   if (format == RawFormat::automatic) {
-    switch (record_format_of(path)) {
-      case RecordFormat::wav:
-        return wav_source(path, columns);
-      case RecordFormat::text:
-      case RecordFormat::lvm:  // without headers it is a table
-        if (is_lvm(path) || text_maker_of(path) != TextMaker::none) return record_source(path, columns);
-        format = RawFormat::csv;
-        break;
-      case RecordFormat::none:
-        (void)open_file(path);
-        throw InvalidInput(path.string(), "is no recording by its ending",
-                           fmt::format("Recordings are {}; others need --format f32, i16 or csv", record_endings()));
-      default:
-        return record_source(path, columns);
+    const RecordFormat of_ending = record_format_of(path);
+    if (of_ending == RecordFormat::none) {
+      (void)open_file(path);
+      throw InvalidInput(path.string(), "is no recording by its ending",
+                         fmt::format("Recordings are {}; others need --format f32, i16 or csv", record_endings_text()));
     }
+    if (of_ending == RecordFormat::wav) return wav_source(path, columns);
+    if (is_held_whole(path)) return record_source({path}, columns);
+    format = RawFormat::csv;
   }
   std::error_code ignored;
   // Says what is wrong with a missing one. A pipe is opened once: its writer would see the first reader go.
@@ -307,6 +278,14 @@ std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path, co
   if (descriptor < 0) throw InvalidInput(path.string(), std::string("cannot be read: ") + std::strerror(errno));
   return open_bytes(std::make_unique<ByteReader>(descriptor, true, stop, path.string()), path.string(), columns, format,
                     true);
+}
+
+std::unique_ptr<SampleSource> open_samples(const std::vector<std::filesystem::path>& files,
+                                           const SampleColumns& columns) {
+  if (files.size() == 1) return open_samples(files.front(), columns);
+  columns.validate();
+  if (files.empty()) throw InvalidInput("files", "must name one at least");
+  return record_source(files, columns);
 }
 
 std::unique_ptr<SampleSource> open_sample_stream(int descriptor, const std::string& where, const SampleColumns& columns,

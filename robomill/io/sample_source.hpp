@@ -88,6 +88,15 @@ class ROBOMILL_API SampleSource {
                                                                       RawFormat format = RawFormat::automatic,
                                                                       const std::atomic<bool>* stop = nullptr);
 
+/// A recording whose channels are in several files of one rate, joined by time, or by rate and length. All of them are
+/// held whole, WAV and text too. A channel is named as of one file, or "FILE:COLUMN" where several files have it.
+/// @throws InvalidInput as open_samples of one, and naming two files that do not go together
+[[nodiscard]] ROBOMILL_API std::unique_ptr<SampleSource> open_samples(const std::vector<std::filesystem::path>& files,
+                                                                      const SampleColumns& columns);
+
+/// Whether open_samples holds a file whole, by its ending and its beginning; false also of what is no recording.
+[[nodiscard]] ROBOMILL_API bool is_held_whole(const std::filesystem::path& path);
+
 /// Bytes from an open descriptor, standard input say, which stays open.
 /// @param where  names it in messages
 /// @throws InvalidInput if text has no such columns

@@ -207,6 +207,51 @@ TEST(SampleSource, ReadsMat) {
   EXPECT_EQ(open_samples(folder.at("m.mat"), named({"ay"}))->sample_rate_hz(), 5000.0);
 }
 
+// One recording in two files is that in one.
+TEST(SampleSource, JoinsChannelsThatAreApart) {
+  const test::Folder folder;
+  std::string whole = "time_s,ax,ay\n", x = "time_s,ax\n", y = "time_s,ay\n";
+  for (int i = 0; i < 50; ++i) {
+    const std::string time = std::to_string(0.25 * i);
+    whole += time + "," + std::to_string(i) + "," + std::to_string(-i) + "\n";
+    x += time + "," + std::to_string(i) + "\n";
+    y += time + "," + std::to_string(-i) + "\n";
+  }
+  const auto together = folder.file("whole.csv", whole), a = folder.file("x.csv", x), b = folder.file("y.csv", y);
+  const auto source = open_samples({a, b}, named({"ay", "ax"}));
+  EXPECT_EQ(source->sample_rate_hz(), 4.0);
+  EXPECT_EQ(all(*source), read(together, named({"ay", "ax"})));
+  EXPECT_EQ(all(*open_samples({a, b}, named({"y.csv:2", "ax"}))), read(together, named({"ay", "ax"})));
+  EXPECT_EQ(all(*open_samples(std::vector{together}, named({"ax"}))), read(together, named({"ax"})));
+  // Sound names nothing: its columns in their order.
+  write_wav(folder.at("x.wav"), {1, 2, 3}, 1, 8.0);
+  write_wav(folder.at("y.wav"), {4, 5, 6, 7}, 1, 8.0);
+  const auto sound = open_samples({folder.at("x.wav"), folder.at("y.wav")}, named({"ax", "ay"}));
+  EXPECT_EQ(all(*sound), (std::vector<float>{1, 4, 2, 5, 3, 6}));
+  EXPECT_EQ(sound->notes().size(), 2U) << "they begin together, and one is longer";
+  const auto says = [&](const std::vector<std::filesystem::path>& files, const SampleColumns& columns,
+                        const std::string& part) {
+    const std::string said = test::rejection([&] { (void)open_samples(files, columns); });
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  };
+  says({folder.at("x.wav"), folder.at("y.wav")}, named({"1"}), "column 1 may be of any of the files");
+  says({a, b}, named({"ax", "x.csv:2"}), "column 2 would be two channels, x.csv:2 among them");
+  says({a, b}, named({"az"}), "have no column az. x.csv has time_s, ax; y.csv has time_s, ay");
+  says({a, folder.at("x.wav")}, named({"ax"}), "x.wav: was sampled at 8 Hz, and x.csv at 4 Hz");
+  says({a, b}, {.channels = {"ax"}, .sample_rate_hz = 5.0}, "was sampled at 4 Hz, not at signal.sample_rate_hz = 5 Hz");
+  says({a, folder.at("none.csv")}, named({"ax"}), "none.csv");
+  says({}, named({"ax"}), "files: must name one at least");
+}
+
+TEST(SampleSource, HoldsWholeWhatIsNotReadInBlocks) {
+  const test::Folder folder;
+  for (const char* name : {"a.mat", "a.npz", "a.h5", "a.tdms", "a.uff"}) EXPECT_TRUE(is_held_whole(name)) << name;
+  EXPECT_FALSE(is_held_whole("a.wav"));
+  EXPECT_FALSE(is_held_whole("a.raw"));
+  EXPECT_FALSE(is_held_whole(folder.file("a.csv", "1\n2\n")));
+  EXPECT_TRUE(is_held_whole(folder.file("a.txt", "LabVIEW Measurement\t\n")));
+}
+
 /// A pipe whose other end is written by a thread, some bytes at a time.
 class Pipe {
  public:

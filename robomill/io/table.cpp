@@ -320,10 +320,7 @@ InvalidInput TextTable::reject(const Row& row, std::string_view name, std::strin
   return InvalidInput(std::move(parts));
 }
 
-namespace {
-
-/// The first unusual number of each column; of one whose largest counts that.
-void compare(const TextTable& table, std::vector<std::string>& warnings) {
+void warn_of_unusual(const TextTable& table, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const UsualRange* row_of_key = usual_range(table.names[i]);
     if (row_of_key == nullptr) continue;
@@ -345,8 +342,6 @@ void compare(const TextTable& table, std::vector<std::string>& warnings) {
     if (warning) warnings.push_back(std::move(*warning));
   }
 }
-
-}  // namespace
 
 TextTable parse_text_table(std::string_view content, const std::string& where, std::vector<std::string>& warnings) {
   check_encoding(content, where);
@@ -380,7 +375,7 @@ TextTable parse_text_table(std::string_view content, const std::string& where, s
     out.rows.push_back(std::move(row));
   }
   if (out.rows.empty()) throw InvalidInput(where, "holds no row below a line of names");
-  compare(out, warnings);
+  warn_of_unusual(out, warnings);
   return out;
 }
 

@@ -68,6 +68,10 @@ struct TextTable {
 [[nodiscard]] TextTable parse_text_table(std::string_view content, const std::string& where,
                                          std::vector<std::string>& warnings);
 
+/// A sentence for each column that holds a number which is unusual of its name: the first one, or the largest where
+/// that alone counts (io/usual_ranges.hpp).
+void warn_of_unusual(const TextTable& table, std::vector<std::string>& warnings);
+
 /// Whether a line of a table is skipped: empty, or beginning with #, % or //.
 [[nodiscard]] bool is_table_comment(std::string_view line);
 

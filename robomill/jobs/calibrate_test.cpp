@@ -69,5 +69,36 @@ TEST(RunCalibrate, IsTheCalibrationOfItsRecordings) {
             "calibration");
 }
 
+// Channels in files of their own calibrate as those of one file do.
+TEST(RunCalibrate, TakesChannelsApart) {
+  const test::Folder folder;
+  const std::vector<monitor::Recording> recordings = noise();
+  std::string together = "[signal]\nchannels = [1, 2]\n[calibration]\nfalse_alarm_rate = 0.1\n";
+  std::string apart = "[signal]\nchannels = [\"ax\", \"ay\"]\n[calibration]\nfalse_alarm_rate = 0.1\n";
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const std::vector<float>& x = recordings[i].samples;
+    const std::vector<float> y(x.rbegin(), x.rend());
+    std::vector<float> both;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      both.push_back(x[k]);
+      both.push_back(y[k]);
+    }
+    const std::string n = std::to_string(i);
+    io::write_wav(folder.at("x" + n + ".wav"), x, 1, 10240.0);
+    io::write_wav(folder.at("y" + n + ".wav"), y, 1, 10240.0);
+    io::write_wav(folder.at("xy" + n + ".wav"), both, 2, 10240.0);
+    const std::string label =
+        recordings[i].chatter ? "label = \"chatter\"\nonset_s = 0.9766\n" : "label = \"stable\"\n";
+    together += "[[recordings]]\nfile = \"xy" + n + ".wav\"\n" + label;
+    apart += "[[recordings]]\nfile = [\"x" + n + ".wav\", \"y" + n + ".wav\"]\n" + label;
+  }
+  const CalibrateResult of_one = run_calibrate(folder.file("together.toml", together), 2);
+  const CalibrateResult of_two = run_calibrate(folder.file("apart.toml", apart), 2);
+  EXPECT_EQ(of_two.calibration.options.threshold, of_one.calibration.options.threshold);
+  EXPECT_EQ(of_two.calibration.verifying.chosen.detection_rate, of_one.calibration.verifying.chosen.detection_rate);
+  EXPECT_EQ(of_two.monitor.notes.size(), 8U) << "nothing says that they begin together";
+  EXPECT_NE(of_two.calibration.alarms.at(0).name.find("y0.wav"), std::string::npos);
+}
+
 }  // namespace calibrate_test
 }  // namespace robomill::jobs

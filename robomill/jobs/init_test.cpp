@@ -414,6 +414,20 @@ TEST_F(Init, HitsInOtherUnitsAreConverted) {
   EXPECT_NEAR(in_g.responses[0].samples(154), 9.80665 * std::exp(-0.08) * std::sin(1.6), 1e-3);
 }
 
+// Nothing that is assumed stays silent.
+TEST_F(Init, UnitsThatNoRecordStatesAreListed) {
+  put("hit_x_1.csv", record("time_s,force,ax,ay"));
+  EXPECT_EQ(made({.kind = Template::hits}).notes,
+            (std::vector<std::string>{
+                "1 record of hits was found in " + folder_.path().string() + ": what is guessed is marked, check it.",
+                "Assumed: Forces in records without a unit: N (acquisition.force_mv_per_n of hits.toml)",
+                "Assumed: Responses in records without a unit: m/s² (acquisition.response_mv_per_m_per_s2 of "
+                "hits.toml)"}));
+  std::filesystem::remove(at("hits.toml"));
+  put("hit_x_1.csv", record("time_s,force_n,ax_g,ay_g"));
+  EXPECT_EQ(made({.kind = Template::hits}).notes.size(), 1U);
+}
+
 // 2.25 mV/N and 100 mV/g of each column in its own unit.
 TEST_F(Init, HitsMayHaveTwoVoltageUnits) {
   for (const auto& [names, force_per_v, response_per_v] :

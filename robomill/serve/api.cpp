@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/toml/edit.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/answers.hpp"
@@ -178,6 +179,7 @@ HttpResponse Api::Parts::state() {
                         {"folder", folder.root().filename().string()},
                         {"files", std::move(list)},
                         {"files_left_out", left_out},
+                        {"record_endings", io::record_endings()},
                         {"jobs", jobs.list()}});
 }
 

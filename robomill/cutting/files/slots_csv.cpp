@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -13,6 +16,8 @@
 #include "robomill/cutting/files/slots_schema.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records/record_formats.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/schema.hpp"
 #include "robomill/io/table.hpp"
 
@@ -41,6 +46,31 @@ constexpr std::array<Column, 6> columns = {{
     {"fz_n", "", 1.0, [](SlotForce& s) -> double& { return s.mean_force_n.z(); }},
 }};
 constexpr std::string_view may_be_missing = "spindle_speed_rpm";
+
+/// Rows of a file of named values (.mat, .npz, …), as those of a text: their numbers count from 1 as its lines do.
+io::TextTable table_of(const io::Record& record, std::vector<std::string>& notes) {
+  io::TextTable table{.where = record.file.string(), .names = record.names};
+  const Eigen::Index rows = record.columns.front().size();
+  for (const Eigen::VectorXd& column : record.columns) {
+    if (column.size() != rows) throw InvalidInput(table.where, "has columns of several lengths");
+  }
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    io::TextTable::Row& to = table.rows.emplace_back();
+    to.line = static_cast<std::size_t>(row) + 1;
+    for (const Eigen::VectorXd& column : record.columns) to.fields.push_back(fmt::format("{}", column(row)));
+  }
+  std::ranges::copy(record.notes, std::back_inserter(notes));
+  io::warn_of_unusual(table, notes);
+  return table;
+}
+
+/// Text where the ending does not say that it is something else.
+io::TextTable read_table(const std::filesystem::path& path, std::vector<std::string>& notes) {
+  const bool is_text = io::record_format_of(path) == io::RecordFormat::text ||
+                       (!io::is_read_as_record(path) && io::unread_record(path).what.empty());
+  if (is_text) return io::parse_text_table(io::read_file(path), path.string(), notes);
+  return table_of(io::read_record(path), notes);
+}
 
 void check_columns(const io::TextTable& table) {
   std::vector<std::string> known;
@@ -266,7 +296,7 @@ const io::TableInfo& coefficients_document() {
 
 SlotsFile read_slots(const std::filesystem::path& path) {
   SlotsFile out;
-  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string(), out.notes);
+  const io::TextTable table = read_table(path, out.notes);
   check_columns(table);
   out.slots.reserve(table.rows.size());
   out.lines.reserve(table.rows.size());

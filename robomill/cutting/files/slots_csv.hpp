@@ -15,11 +15,12 @@ namespace robomill::cutting {
 /// slots.csv: mean forces of slots, on the tool.
 struct SlotsFile {
   std::vector<SlotForce> slots;
-  std::vector<std::size_t> lines;       ///< of each in the file, from 1
+  std::vector<std::size_t> lines;       ///< of each in the file, of one without lines rows; from 1
   std::vector<std::string> notes = {};  ///< sentences for the user
 };
 
-/// Columns feed_per_tooth_mm, axial_depth_mm, fx_n, fy_n, fz_n, and spindle_speed_rpm where it is known.
+/// Columns feed_per_tooth_mm, axial_depth_mm, fx_n, fy_n, fz_n, and spindle_speed_rpm where it is known, of a text or
+/// of any other file that io::read_record reads.
 /// @throws InvalidInput with file, line, column and value
 [[nodiscard]] ROBOMILL_API SlotsFile read_slots(const std::filesystem::path& path);
 

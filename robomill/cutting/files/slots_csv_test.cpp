@@ -58,6 +58,43 @@ TEST(SlotsCsv, RejectsInTheFilesWords) {
   expect("feed_per_tooth,axial_depth_mm,fx_n,fy_n,fz_n\n1,2,3,4,5\n", "Did you mean feed_per_tooth_mm?");
 }
 
+/// A structured array of NumPy.
+std::string npy(const std::vector<std::string>& names, const std::vector<std::vector<double>>& rows) {
+  std::string header = "{'descr': [";
+  for (const std::string& name : names) header += "('" + name + "', '<f8'), ";
+  header += "], 'fortran_order': False, 'shape': (" + std::to_string(rows.size()) + ",), }\n";
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(header.size() % 256);
+  out += static_cast<char>(header.size() / 256);
+  out += header;
+  for (const std::vector<double>& row : rows)
+    out.append(reinterpret_cast<const char*>(row.data()), sizeof(double) * row.size());
+  return out;
+}
+
+TEST(SlotsCsv, ReadsTheFormatsOfRecords) {
+  const test::Folder folder;
+  const std::vector<std::string> names = {"feed_per_tooth_mm", "axial_depth_mm", "fx_n", "fy_n", "fz_n"};
+  const SlotsFile file = read_slots(
+      folder.file("slots.npy", npy(names, {{0.05, 5.08, -555.8508, 655.6513, 255.9891}, {0.1, 5.08, -1.0, 2.0, 3.0}})));
+  ASSERT_EQ(file.slots.size(), 2U);
+  EXPECT_DOUBLE_EQ(file.slots[0].feed_per_tooth_m, 5e-5);
+  EXPECT_EQ(file.slots[0].mean_force_n, Eigen::Vector3d(-555.8508, 655.6513, 255.9891));
+  EXPECT_EQ(file.slots[1].spindle_speed_rad_per_s, 0.0);
+  EXPECT_EQ(file.lines, (std::vector<std::size_t>{1, 2}));
+  const auto says = [&](const char* name, const std::string& content, const std::string& part) {
+    const std::string said = test::rejection([&] { static_cast<void>(read_slots(folder.file(name, content))); });
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  };
+  says("slots.npy", npy(names, {{0.05, 5, 1, 2, 3}, {0.05, 0, 1, 2, 3}}),
+       "slots.npy:2: axial_depth_mm = 0 mm; must be > 0");
+  says("slots.npy", npy({"feed_per_tooth_mm", "axial_depth_mm", "fx_n", "fy_n"}, {{1, 2, 3, 4}, {1, 2, 3, 4}}),
+       "has no column fz_n");
+  says("slots.xlsx", "PK", "save the sheet as CSV");
+  EXPECT_EQ(read_slots(folder.file("slots.npy", npy(names, {{50.0, 5, 1, 2, 3}, {50.0, 5, 1, 2, 3}}))).notes.size(), 1U)
+      << "a feed in µm";
+}
+
 TEST(SlotsCsv, SurvivesMutations) {
   const test::Folder folder;
   const std::string good = head + "0.05,5.08,3000,-555.8,655.6,255.9\n0.1,5.08,3000,-751.4,887.4,446.0\n";

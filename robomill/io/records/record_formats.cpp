@@ -56,9 +56,14 @@ bool is_read_as_record(const std::filesystem::path& path) {
   return record_format_of(path) != RecordFormat::none;
 }
 
-std::string record_endings() {
+std::vector<std::string_view> record_endings() {
   std::vector<std::string_view> endings;
   for (const RecordEnding& each : record_ending_list) endings.push_back(each.ending);
+  return endings;
+}
+
+std::string record_endings_text() {
+  std::vector<std::string_view> endings = record_endings();
   const std::string_view last = endings.back();
   endings.pop_back();
   return fmt::format("{} and {}", fmt::join(endings, ", "), last);

@@ -131,7 +131,7 @@ InvalidInput no_record(const Path& path) {
   (void)read_file(path);  // says what is wrong with a missing one
   const UnreadRecord unread = unread_record(path);
   if (!unread.what.empty()) return InvalidInput(path.string(), "is " + unread.what, unread.remedy);
-  return InvalidInput(path.string(), "is no record by its ending", "Records are " + record_endings());
+  return InvalidInput(path.string(), "is no record by its ending", "Records are " + record_endings_text());
 }
 
 }  // namespace

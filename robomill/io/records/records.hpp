@@ -16,6 +16,7 @@ struct Record {
   std::vector<std::string> names;             ///< one a column; empty texts where the file names none
   std::vector<std::string> units = {};        ///< one a column, beside its name; empty texts: not said
   std::string units_by = "the row of units";  ///< where the file says them
+  bool si_assumed = false;                    ///< units are SI because the file states none
   std::vector<Eigen::VectorXd> columns;       ///< in the order of the file, a column of time among them
   std::vector<std::string> left_out = {};     ///< what of the file is no column, each with the reason: "Temp (10 Hz)"
   std::vector<std::string> notes = {};        ///< what a reader must know: data sets skipped, units converted
@@ -53,8 +54,10 @@ struct RecordOptions {
 
 /// Whether a file is one that read_record reads, by its ending.
 [[nodiscard]] bool is_read_as_record(const std::filesystem::path& path);
-/// The endings of those files: ".csv, .txt, … and .wav".
-[[nodiscard]] std::string record_endings();
+/// The endings of those files: ".csv", ".txt", …
+[[nodiscard]] std::vector<std::string_view> record_endings();
+/// ".csv, .txt, … and .wav"
+[[nodiscard]] std::string record_endings_text();
 
 /// What a file is that holds a record and is not read, and what to do: "an ASAM MDF file, which is not read yet". Empty
 /// texts where the ending says nothing of it.

@@ -122,7 +122,7 @@ std::vector<std::string> endings_in(const std::string& text) {
 
 // One list: what is read, what errors name, and what the documents say.
 TEST(Records, EndingsAreTheSameEverywhere) {
-  const std::vector<std::string> known = endings_in(" " + record_endings());
+  const std::vector<std::string> known = endings_in(" " + record_endings_text());
   ASSERT_EQ(known.size(), 16U);
   for (const std::string& ending : known) {
     EXPECT_TRUE(is_read_as_record("a" + ending)) << ending;
@@ -239,6 +239,20 @@ TEST(Records, UniversalFilesSayUnitsAndNames) {
             std::string::npos);
 }
 
+TEST(Records, AUniversalFileWithoutAnyUnitIsTakenAsSi) {
+  const Folder folder;
+  const std::string text = format_uff({response(0.5, "Hammer", 13, "NONE")}, false);
+  write_file(folder.at("a.uff"), text);
+  EXPECT_FALSE(read_record(folder.at("a.uff")).si_assumed) << "data set 164 states SI";
+  const std::string bare = text.substr(text.find("    -1\n    58"));
+  write_file(folder.at("a.uff"), bare);
+  EXPECT_TRUE(read_record(folder.at("a.uff")).si_assumed);
+  EXPECT_EQ(read_record(folder.at("a.uff")).units, std::vector<std::string>{"N"});
+  const std::string stated = format_uff({response(0.5, "Hammer", 13, "N")}, false);
+  write_file(folder.at("a.uff"), stated.substr(stated.find("    -1\n    58")));
+  EXPECT_FALSE(read_record(folder.at("a.uff")).si_assumed);
+}
+
 // Of a data type and a unit that contradict each other the unit counts, which has the factor.
 TEST(Records, AUnitOfAUniversalFileCountsBeforeItsDataType) {
   const Folder folder;
@@ -249,6 +263,10 @@ TEST(Records, AUnitOfAUniversalFileCountsBeforeItsDataType) {
   ASSERT_EQ(record.notes.size(), 1U);
   EXPECT_NE(record.notes[0].find("Warning: "), std::string::npos);
   EXPECT_NE(record.notes[0].find("its ordinate is of data type 12, and in \"kN\": the unit counts"), std::string::npos);
+  // A sensor's voltage, whatever it is of.
+  write_file(folder.at("a.uff"), format_uff({response(0.5, "Tip", 12, "mV")}, false));
+  EXPECT_EQ(read_record(folder.at("a.uff")).units, std::vector<std::string>{"mV"});
+  EXPECT_EQ(read_record(folder.at("a.uff")).column("Tip"), Eigen::Vector4d(0, 1, -2, 3));
 }
 
 void write_wav(const std::filesystem::path& path, int format, const std::vector<double>& frames, int channels) {

@@ -30,7 +30,8 @@ struct UffFunction {
   UffAxis abscissa_axis, numerator, denominator;
   /// Data set 164 in force: file units / SI units of length and force.
   double length_factor = 1.0, force_factor = 1.0;
-  std::size_t line = 0;  ///< of its data set, from 1
+  bool has_units = false;  ///< such a data set stands before it
+  std::size_t line = 0;    ///< of its data set, from 1
 };
 
 struct UffFile {

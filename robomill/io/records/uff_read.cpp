@@ -218,6 +218,7 @@ class Reader {
     }
     length_factor_ = values[0];
     force_factor_ = values[1];
+    has_units_ = true;
   }
 
   void read_function(const std::optional<Binary>& binary) {
@@ -230,6 +231,7 @@ class Reader {
     function.line = lines_.number();
     function.length_factor = length_factor_;
     function.force_factor = force_factor_;
+    function.has_units = has_units_;
     for (std::string& id : function.id) id = std::string(trimmed(header_line()));
     read_degrees_of_freedom(function);
     const Layout layout = read_layout();
@@ -467,6 +469,7 @@ class Reader {
   std::vector<std::pair<std::string, int>> skipped_;
   bool began_ = false;
   double length_factor_ = 1.0, force_factor_ = 1.0;
+  bool has_units_ = false;
 };
 
 }  // namespace

@@ -112,6 +112,10 @@ class UffRecordReader {
 
   /// By the unit's text where it contradicts the data type: it says the factor too.
   void to_si(const UffFunction& function, const std::string& where, FileChannel& channel, Eigen::VectorXd& values) {
+    if (volts_in(function.numerator.unit) > 0.0) {
+      channel.unit = function.numerator.unit;  // who reads the record knows what they are of
+      return;
+    }
     SiFactor si = si_factor(function.numerator, function.length_factor, function.force_factor);
     const SiFactor said = parse_unit(function.numerator.unit);
     if (said.quantity != Quantity::unknown && si.quantity != said.quantity) {
@@ -119,7 +123,6 @@ class UffRecordReader {
       si.note = fmt::format("{}its ordinate is of data type {}, and in \"{}\": the unit counts", warning_label,
                             function.numerator.type, function.numerator.unit);
     }
-    if (volts_in(function.numerator.unit) > 0.0) si.note.clear();  // who reads the record knows them
     const bool is_warning = si.note.starts_with(warning_label);
     if (!si.note.empty()) {
       record_.notes.push_back(fmt::format("{}{}: {}", is_warning ? warning_label : "", where,
@@ -127,6 +130,7 @@ class UffRecordReader {
     }
     if (si.factor != 1.0) values *= si.factor;
     channel.unit = si_unit(si.quantity);
+    if (!channel.unit.empty() && said.quantity == Quantity::unknown && !function.has_units) record_.si_assumed = true;
     if (channel.unit.empty() && !says_nothing_of(function.numerator.unit)) channel.unit = function.numerator.unit;
   }
 

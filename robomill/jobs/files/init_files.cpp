@@ -14,6 +14,7 @@
 #include "robomill/jobs/init/hits_document.hpp"
 #include "robomill/jobs/init/template_lines.hpp"
 #include "robomill/modal/files/example_hit.hpp"
+#include "robomill/modal/files/hit_files/hit_settings.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 
 namespace robomill::jobs {
@@ -59,6 +60,8 @@ void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, 
     const bool one = found.hits.size() == 1;
     out.notes.push_back(fmt::format("{} record{} of hits {} found in {}: what is guessed is marked, check it.",
                                     found.hits.size(), one ? "" : "s", one ? "was" : "were", data.string()));
+    for (const Assumption& unit : modal::assumed_units(found, path.filename().string()))
+      out.notes.push_back("Assumed: " + assumption_text(unit));
   }
   for (std::size_t i = 0; i < std::min(found.left_out.size(), most_notes); ++i) {
     out.notes.push_back(fmt::format("Left out: {}.", found.left_out[i]));

@@ -133,7 +133,7 @@ std::string reason_of(const InvalidInput& error) {
 /// One file by itself; none: it shows no hit. @throws InvalidInput as io::read_record
 std::optional<FoundHit> found_alone(const fs::path& path) {
   const io::Record record = io::read_record(path);
-  FoundHit hit{.format = io::format_of(path), .guess = guess_hit(record)};
+  FoundHit hit{.format = io::format_of(path), .si_assumed = record.si_assumed, .guess = guess_hit(record)};
   if (!hit.guess.is_hit()) return std::nullopt;
   const std::vector<std::size_t> times = hit.guess.with(Role::time);
   if (!times.empty()) {
@@ -215,6 +215,29 @@ FoundHits find_hits(const fs::path& data, const fs::path& folder, std::string_vi
 
 FoundHits find_hits(const std::vector<fs::path>& files, const fs::path& folder) {
   return found_among(files, folder, true);
+}
+
+std::optional<FoundHit> find_set_of(const fs::path& file) {
+  std::vector<fs::path> set;
+  for (const fs::path& path : records_in(file.parent_path())) {
+    if (set_key(path) != set_key(file)) continue;
+    try {
+      if (!found_alone(path)) set.push_back(path);
+    } catch (const InvalidInput&) {
+      continue;  // it cannot be read, and belongs to none
+    }
+  }
+  const auto is_file = [&](const fs::path& path) { return path.filename() == file.filename(); };
+  if (set.size() < 2 || std::ranges::none_of(set, is_file)) return std::nullopt;
+  std::optional<FoundHit> hit;
+  try {
+    hit = found_in_set(set);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+  if (!hit) return std::nullopt;
+  for (const fs::path& path : set) hit->files.push_back(path.filename().string());
+  return hit;
 }
 
 std::string FoundHit::name() const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,8 +19,9 @@ struct FoundHit {
       {};  ///< relative to hits.toml; several: force and responses apart, the force's first
   io::Format format = io::Format::unknown;
   double sample_rate_hz = 0.0;  ///< 0: not known
-  std::string time = {};  ///< column of the time in s as hits.toml names it; empty: it is found by its name, or none
-  HitGuess guess = {};    ///< of the columns of all files one after the other, named as hits.toml names them
+  std::string time = {};    ///< column of the time in s as hits.toml names it; empty: it is found by its name, or none
+  bool si_assumed = false;  ///< units are SI because a file states none
+  HitGuess guess = {};      ///< of the columns of all files one after the other, named as hits.toml names them
 
   /// The first column with that role; null: none.
   [[nodiscard]] const ColumnGuess* first(ColumnGuess::Role role) const;
@@ -44,6 +46,11 @@ struct FoundHits {
 
 /// The same of these files alone; two of them that are no hits by themselves may have any names.
 [[nodiscard]] FoundHits find_hits(const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder);
+
+/// The record of a file that shows no hit by itself: it and those beside it whose names differ by words for force and
+/// response alone. None where they show no hit together either.
+/// @throws InvalidInput if the folder cannot be read
+[[nodiscard]] std::optional<FoundHit> find_set_of(const std::filesystem::path& file);
 
 /// In which directions there are hits and sensors.
 struct MeasuredAxes {

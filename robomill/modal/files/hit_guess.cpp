@@ -264,6 +264,10 @@ std::vector<std::string> words_in(std::string_view text) {
   return words;
 }
 
+bool states_unit(const ColumnGuess& column) {
+  return !column.unit.empty() && column.unit != "-";
+}
+
 ColumnGuess guess_by_name(const io::Record& record, std::size_t place) {
   const std::string name = place < record.names.size() ? record.names[place] : std::string();
   ColumnGuess out;

@@ -28,6 +28,9 @@ struct ColumnGuess {
   double volts = 0;        ///< a 1 of the column; 0: no voltage
 };
 
+/// Whether a unit is stated, known or not.
+[[nodiscard]] bool states_unit(const ColumnGuess& column);
+
 /// What the name and unit of a record's column say. @param place  from 0
 [[nodiscard]] ColumnGuess guess_by_name(const io::Record& record, std::size_t place);
 

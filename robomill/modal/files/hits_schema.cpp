@@ -1,12 +1,11 @@
 #include "robomill/modal/files/hits_schema.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/joined_records.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -66,19 +65,6 @@ std::string read_column(TomlFile& file, const std::string& path) {
 template <class F>
 Row<HitTable> column_key(const char* name, const char* meaning, F code) {
   return declared<HitTable>(name, Holds::text, meaning).or_also(Holds::integer).read_by(code);
-}
-
-void read_files(TomlFile& file, const std::string& path, HitTable& out) {
-  file.paths(path, out.files);
-  if (!file.has(path)) return;
-  if (out.files.empty()) throw file.reject(path, "must name a file");
-  for (std::size_t i = 0; i < out.files.size(); ++i) {
-    if (!out.files[i].has_filename()) throw file.reject(path, "must name a file");
-    if (std::find(out.files.begin(), out.files.begin() + static_cast<std::ptrdiff_t>(i), out.files[i]) !=
-        out.files.begin() + static_cast<std::ptrdiff_t>(i)) {
-      throw file.reject(path, "names a file twice", "Force and responses of one file need it once");
-    }
-  }
 }
 
 void read_force_direction(TomlFile& file, const std::string& path, HitTable& out) {
@@ -184,12 +170,15 @@ const Schema<Acquisition>& acquisition_table() {
 const Schema<HitTable>& hit_table() {
   static const Schema<HitTable> table(
       "hit", "a hit and its record",
-      {declared<HitTable>("file", Holds::path,
-                          "a record: .csv .txt .mat .uff .wav .lvm .tdms; a list of the force's file and the "
-                          "responses' where they are apart; not needed for a tap test's stream",
-                          1)
+      {declared<HitTable>(
+           "file", Holds::path,
+           "a record in any format of measurement files; a list of the force's file and the responses' where they are "
+           "apart; not needed for a tap test's stream",
+           1)
            .or_one()
-           .read_by(read_files),
+           .read_by([](TomlFile& file, const std::string& path, HitTable& out) {
+             io::read_record_files(file, path, out.files);
+           }),
        column_key("time", "column's name or number from 1, where it is not found; of several files in each that has it",
                   [](TomlFile& file, const std::string& path, HitTable& out) { out.time = read_column(file, path); }),
        column_key(

@@ -17,6 +17,7 @@
 #include "robomill/io/toml/file.hpp"
 #include "robomill/io/toml/samples.hpp"
 #include "robomill/modal/files/hit_files/hit_record.hpp"
+#include "robomill/modal/files/hit_files/hit_settings.hpp"
 #include "robomill/modal/files/hit_guess.hpp"
 #include "robomill/modal/files/hits_schema.hpp"
 #include "robomill/modal/impact/hit_split.hpp"
@@ -33,10 +34,19 @@ struct Sensors {
   double sample_rate_hz = 0.0;
   double hit_spacing_s = 0.0;
   bool force_in_volts = false, response_in_volts = false;  ///< the sensitivities are given
+  double record_mv = 1e3, response_record_mv = 1e3;        ///< what a 1 of a record in volts is
+};
+
+/// What some record does not state the unit of.
+struct OpenUnits {
+  bool force = false, response = false;
+  bool volts = false;  ///< of one of them, beside a sensitivity and without voltage_unit
 };
 
 constexpr const char* force_key = "acquisition.force_mv_per_n";
 constexpr const char* response_in_g_key = "acquisition.response_mv_per_g";
+constexpr const char* voltage_key = "acquisition.voltage_unit";
+constexpr const char* response_voltage_key = "acquisition.response_voltage_unit";
 
 std::string response_key(ResponseKind kind) {
   return fmt::format("acquisition.response_mv_per_{}", response_unit(kind));
@@ -70,8 +80,6 @@ bool take_sensitivity(const io::TomlFile& file, const std::string& key, std::opt
 
 /// Without sensitivities the records are in N and the SI unit of the response.
 void take_sensitivities(const io::TomlFile& file, const Acquisition& given, Sensors& sensors) {
-  const char* const voltage = "acquisition.voltage_unit";
-  const char* const response_voltage = "acquisition.response_voltage_unit";
   const ResponseKind kind = given.options.response;
   const double response_mv = given.response_record_mv > 0.0 ? given.response_record_mv : given.record_mv;
   const std::string in_si = response_key(kind);
@@ -89,16 +97,18 @@ void take_sensitivities(const io::TomlFile& file, const Acquisition& given, Sens
                                          units::standard_gravity, sensors.response_factor);
   sensors.force_in_volts = force;
   sensors.response_in_volts = response;
+  sensors.record_mv = given.record_mv;
+  sensors.response_record_mv = response_mv;
   // Records in volts are neither N nor m/s^2.
-  if (file.has(voltage)) {
+  if (file.has(voltage_key)) {
     if (!force) file.require(force_key, "voltage_unit says that the records are in volts: it is on the hammer's sheet");
     if (!response) {
       file.require(kind == ResponseKind::acceleration ? std::string(response_in_g_key) : in_si,
                    "voltage_unit says that the records are in volts: it is on the sensor's calibration sheet");
     }
   }
-  if (file.has(response_voltage) && !response) {
-    throw file.reject(response_voltage, "goes with the response's sensitivity: response_mv_per_g");
+  if (file.has(response_voltage_key) && !response) {
+    throw file.reject(response_voltage_key, "goes with the response's sensitivity: response_mv_per_g");
   }
 }
 
@@ -121,43 +131,80 @@ struct ReadAs {
   std::string unit = "N";
   bool in_volts = false;      ///< a sensitivity is given …
   double given_factor = 1.0;  ///< … and makes so much of a 1
-  std::string sensitivity = force_key;
+  double record_mv = 1e3;     ///< that a 1 is
+  std::string sensitivity = force_key, voltage = voltage_key;
 };
 
-ReadAs response_read_as(ResponseKind kind, const Sensors& sensors) {
-  const bool in_volts = sensors.response_in_volts;
-  const double given = sensors.response_factor;
-  switch (kind) {
-    case ResponseKind::acceleration:
-      return {io::Quantity::acceleration, "m/s²", in_volts, given, response_in_g_key};
-    case ResponseKind::velocity:
-      return {io::Quantity::velocity, "m/s", in_volts, given, response_key(kind)};
-    case ResponseKind::displacement:
-      break;
+struct ReadColumns {
+  ReadAs force, response;
+};
+
+ReadAs response_read_as(const io::TomlFile& file, ResponseKind kind, const Sensors& sensors) {
+  ReadAs as{.quantity = io::Quantity::acceleration,
+            .unit = "m/s²",
+            .in_volts = sensors.response_in_volts,
+            .given_factor = sensors.response_factor,
+            .record_mv = sensors.response_record_mv,
+            .sensitivity = kind == ResponseKind::acceleration ? response_in_g_key : response_key(kind),
+            .voltage = file.has(response_voltage_key) ? response_voltage_key : voltage_key};
+  if (kind == ResponseKind::velocity) {
+    as.quantity = io::Quantity::velocity;
+    as.unit = "m/s";
+  } else if (kind == ResponseKind::displacement) {
+    as.quantity = io::Quantity::displacement;
+    as.unit = "m";
   }
-  return {io::Quantity::displacement, "m", in_volts, given, response_key(kind)};
+  return as;
+}
+
+ReadColumns columns_read_as(const io::TomlFile& file, ResponseKind kind, const Sensors& sensors) {
+  return {.force = {.in_volts = sensors.force_in_volts,
+                    .given_factor = sensors.force_factor,
+                    .record_mv = sensors.record_mv},
+          .response = response_read_as(file, kind, sensors)};
+}
+
+/// How a column becomes what it is taken for.
+struct ColumnUnit {
+  double factor = 1.0;
+  bool stated = true;  ///< by its record
+};
+
+/// A column that is in volts by its record. Its own unit counts where the file gives none.
+/// @param by  says where the unit is stated
+ColumnUnit unit_of_voltage(const io::TomlFile& file, const std::string& key, const ColumnGuess& said, const ReadAs& as,
+                           const std::string& by, std::vector<std::string>& notes) {
+  if (!as.in_volts) {
+    throw file.reject(key, fmt::format("is a voltage {}, and {} is missing", by, as.sensitivity),
+                      "It stands on the sensor's calibration sheet; rename the column if it holds " + as.unit);
+  }
+  const double factor = said.volts * 1e3 / as.record_mv;
+  if (std::abs(factor - 1.0) < 1e-9) return {};
+  if (file.has(as.voltage)) {
+    throw file.reject(key, fmt::format("is in {} {}, and {} says another unit", said.unit, by, as.voltage),
+                      "Correct the one that is wrong, or rename the column");
+  }
+  notes.push_back(fmt::format("Column {} is in {} {}.", said.name, said.unit, by));
+  return {.factor = factor};
 }
 
 /// SI per number of a column whose name, or row of units, states its unit: ax_g, Force [kN]. 1 where none is stated.
 /// @throws InvalidInput with the key, if it is of another quantity than the file takes the column for
-double factor_of_unit(const io::TomlFile& file, const std::string& key, const io::Record& record, std::size_t place,
-                      const ReadAs& as, std::vector<std::string>& notes) {
+ColumnUnit unit_of(const io::TomlFile& file, const std::string& key, const io::Record& record, std::size_t place,
+                   const ReadAs& as, std::vector<std::string>& notes) {
   const ColumnGuess said = guess_by_name(record, place);
   const bool by_row = place < record.units.size() && !record.units[place].empty();
   const std::string by = by_row ? "by " + record.units_by : "by its name";
-  if (said.volts > 0.0) {
-    if (as.in_volts) return 1.0;
-    throw file.reject(key, fmt::format("is a voltage {}, and {} is missing", by, as.sensitivity),
-                      "It stands on the sensor's calibration sheet; rename the column if it holds " + as.unit);
-  }
+  if (said.volts > 0.0) return unit_of_voltage(file, key, said, as, by, notes);
   const io::SiFactor si = io::parse_unit(said.unit);
-  if (said.unit.empty() || said.unit == "-") return 1.0;
+  if (!has_own_units(record)) return {.stated = si.quantity == as.quantity && !record.si_assumed};
+  if (said.unit.empty() || said.unit == "-") return {.stated = false};
   // Of a name it may be a remark: "acc (front)".
   if (!by_row && (si.is_ratio || si.quantity == io::Quantity::unknown)) {
     if (!as.in_volts)
       notes.push_back(fmt::format("Columns {}: \"{}\" is no unit known here, and they are read in {}.", said.name,
                                   said.unit, as.unit));
-    return 1.0;
+    return {.stated = false};
   }
   if (si.is_ratio || si.quantity != as.quantity) {
     throw file.reject(
@@ -167,7 +214,7 @@ double factor_of_unit(const io::TomlFile& file, const std::string& key, const io
             : "acquisition.response says what the sensor measures: acceleration, velocity or displacement");
   }
   if (as.in_volts) {
-    if (std::abs(as.given_factor / si.factor - 1.0) < 1e-3) return 1.0;
+    if (std::abs(as.given_factor / si.factor - 1.0) < 1e-3) return {};
     throw file.reject(key,
                       fmt::format("is in {} {}, where {} makes {:.4g} {} of a 1", said.unit, by, as.sensitivity,
                                   as.given_factor, as.unit),
@@ -177,7 +224,7 @@ double factor_of_unit(const io::TomlFile& file, const std::string& key, const io
     notes.push_back(fmt::format("Columns {} are in {} {}: converted with {:.6g} to {}.", said.name, said.unit,
                                 by_row ? by : "by their name", si.factor, as.unit));
   }
-  return si.factor;
+  return {.factor = si.factor};
 }
 
 HitRecord open_record(const io::TomlFile& file, const std::string& key, const HitTable& given, const Sensors& sensors) {
@@ -197,26 +244,25 @@ HitRecord open_record(const io::TomlFile& file, const std::string& key, const Hi
 
 /// The columns that a row names, in SI.
 Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, const HitRecord& record,
-           ResponseKind kind, const Sensors& sensors, std::vector<std::string>& notes) {
+           const ReadColumns& as, OpenUnits& open, std::vector<std::string>& notes) {
   Hit hit;
   for (const io::Record& part : record.parts) hit.file += (hit.file.empty() ? "" : " + ") + part.file.string();
   hit.excitation = columns.excitation;
   hit.against_axis = columns.against_axis;
   hit.sample_rate_hz = record.sample_rate_hz;
   std::vector<std::string> converted;
-  const auto factor = [&](const std::string& key, const HitRecord::Column& column, const ReadAs& as) {
-    return has_own_units(*column.part) ? factor_of_unit(file, row + key, *column.part, column.place, as, converted)
-                                       : 1.0;
+  const auto factor = [&](const char* key, const HitRecord::Column& column, const ReadAs& read_as, bool& is_open) {
+    const ColumnUnit unit = unit_of(file, row + key, *column.part, column.place, read_as, converted);
+    is_open = is_open || !unit.stated;
+    open.volts = open.volts || (!unit.stated && read_as.in_volts && !file.has(read_as.voltage));
+    return read_as.given_factor * unit.factor;
   };
   const HitRecord::Column force = file.locate([&] { return record.column(columns.force, true); });
-  const double force_unit =
-      factor("force", force, {.in_volts = sensors.force_in_volts, .given_factor = sensors.force_factor});
-  hit.force_n = force.samples() * sensors.force_factor * force_unit;
+  hit.force_n = force.samples() * factor("force", force, as.force, open.force);
   for (const HitRow::Response& response : columns.responses) {
     const HitRecord::Column column = file.locate([&] { return record.column(response.column, false); });
-    const double unit = factor("responses", column, response_read_as(kind, sensors));
     hit.responses.push_back({.dof = response.dof,
-                             .samples = column.samples() * sensors.response_factor * unit,
+                             .samples = column.samples() * factor("responses", column, as.response, open.response),
                              .against_axis = response.against_axis});
   }
   for (const std::string& note : converted) {
@@ -246,8 +292,8 @@ void leave_out(const io::TomlFile& file, const std::string& key, const std::vect
 }
 
 /// The hits of one row: one, or those that its record holds.
-std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, ResponseKind kind, const Sensors& sensors,
-                          std::vector<std::string>& notes) {
+std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, const ReadColumns& as, const Sensors& sensors,
+                          OpenUnits& open, std::vector<std::string>& notes) {
   const std::string row = fmt::format("hits[{}].", index);
   file.require(row + "file");
   HitTable given;
@@ -257,7 +303,7 @@ std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, ResponseKind ki
   if (!(record.sample_rate_hz > 0.0)) {
     throw file.reject(row + "file", "has no time column, and acquisition.sample_rate_hz is missing");
   }
-  Hit whole = hit_of(file, row, given.row, record, kind, sensors, notes);
+  Hit whole = hit_of(file, row, given.row, record, as, open, notes);
   const std::string name = whole.file;
   std::vector<Hit> hits;
   if (given.split) {
@@ -271,23 +317,20 @@ std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, ResponseKind ki
   return hits;
 }
 
-/// What is taken where the file does not say it.
-std::vector<Assumption> assumed_of(const io::TomlFile& file, ResponseKind kind, const std::filesystem::path& path) {
-  const std::string response = response_key(kind), name = path.filename().string();
+/// What is taken where neither the file nor its records say it.
+std::vector<Assumption> assumed_of(const io::TomlFile& file, const ReadColumns& as, ResponseKind kind,
+                                   const OpenUnits& open, const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
   std::vector<Assumption> out;
-  if (!file.has("acquisition.response")) {
+  // A unit that is stated says what the sensors measure.
+  if (!file.has("acquisition.response") && open.response) {
     out.push_back({.what = "Responses", .taken = "accelerations", .key = "acquisition.response", .file = name});
   }
-  if (!file.has(force_key)) {
-    out.push_back({.what = "Forces in records without a unit", .taken = "N", .key = force_key, .file = name});
-  }
-  if (!file.has(response) && !file.has(response_in_g_key)) {
-    out.push_back({.what = "Responses in records without a unit",
-                   .taken = kind == ResponseKind::acceleration ? "m/s²"
-                            : kind == ResponseKind::velocity   ? "m/s"
-                                                               : "m",
-                   .key = response,
-                   .file = name});
+  for (Assumption& one : assumed_units(
+           {.force = open.force && !as.force.in_volts, .response = open.response && !as.response.in_volts}, kind, name))
+    out.push_back(std::move(one));
+  if (open.volts) {
+    out.push_back({.what = "Voltages in records without a unit", .taken = "V", .key = voltage_key, .file = name});
   }
   if (kind == ResponseKind::acceleration && !file.has("acquisition.accelerometer_mass_kg")) {
     out.push_back({.what = "Accelerometer's mass",
@@ -318,10 +361,12 @@ HitsFile read_hits(const io::TomlSource& source) {
   Sensors sensors;
   out.options = read_acquisition(file, sensors);
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
+  const ReadColumns as = columns_read_as(file, out.options.response, sensors);
+  OpenUnits open;
   for (std::size_t i = 0; i < file.tables("hits"); ++i)
-    std::ranges::move(read_row(file, i, out.options.response, sensors, out.notes), std::back_inserter(out.hits));
+    std::ranges::move(read_row(file, i, as, sensors, open, out.notes), std::back_inserter(out.hits));
   std::ranges::move(file.done(), std::back_inserter(out.notes));
-  out.assumed = assumed_of(file, out.options.response, source.path);
+  out.assumed = assumed_of(file, as, out.options.response, open, source.path);
   add_assumed(out.assumed, io::sample_values(file));
   return out;
 }

@@ -22,7 +22,7 @@ struct HitsFile {
   std::vector<Assumption> assumed = {};
 };
 
-/// Reads hits.toml and every record it names (.csv .txt .mat .uff .wav); the keys stand in docs/formats.md.
+/// Reads hits.toml and every record it names (io::read_record); the keys stand in docs/formats.md.
 /// @throws InvalidInput with file, line and key (of hits.toml or of a record) if a key is unknown, missing or wrong, a
 ///     record cannot be read, a column is not there, or no sample rate is known
 [[nodiscard]] ROBOMILL_API HitsFile read_hits(const io::TomlSource& source);

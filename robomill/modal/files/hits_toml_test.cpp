@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <sndfile.h>
 
+#include <Eigen/Core>
+#include <complex>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/io/records/uff.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::modal {
@@ -50,9 +53,9 @@ responses = { x = "ax", -y = 4 }
 // 100 mV/g are 100 / 9.80665 mV per m/s²: 1 V is 10 g.
 TEST(HitsToml, TakesSensitivitiesInGAndRecordsInMillivolts) {
   const test::Folder folder;
-  static_cast<void>(folder.file("a.csv", record));
+  static_cast<void>(folder.file("a.csv", "time_s,force,ax\n0,0,1\n0.001,0.5,3\n0.002,0,5\n"));
   const std::string row =
-      "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
+      "[[hits]]\nfile = \"a.csv\"\nforce = \"force\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
   const auto read = [&](const std::string& keys) {
     return read_hits(folder.file("hits.toml", "[acquisition]\n" + keys + row)).hits[0];
   };
@@ -219,14 +222,74 @@ TEST(HitsToml, ListsWhatItAssumes) {
             (std::vector<std::string>{"acquisition.response", "acquisition.force_mv_per_n",
                                       "acquisition.response_mv_per_m_per_s2", "acquisition.accelerometer_mass_kg"}));
   EXPECT_EQ(keys("[acquisition]\nresponse = \"displacement\"\nforce_mv_per_n = 2\n"),
-            std::vector<std::string>{"acquisition.response_mv_per_m"});
-  EXPECT_TRUE(keys("[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2\nresponse_mv_per_g = 100\n"
-                   "accelerometer_mass_kg = 0\n")
-                  .empty());
+            (std::vector<std::string>{"acquisition.response_mv_per_m", "acquisition.voltage_unit"}));
+  EXPECT_EQ(keys("[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2\nresponse_mv_per_g = 100\n"
+                 "accelerometer_mass_kg = 0\n"),
+            std::vector<std::string>{"acquisition.voltage_unit"})
+      << "V of a record that says nothing";
   // 1 mV/N of a record in mV is 1, and given all the same.
   EXPECT_TRUE(keys("[acquisition]\nresponse = \"acceleration\"\nvoltage_unit = \"mV\"\nforce_mv_per_n = 1\n"
                    "response_mv_per_m_per_s2 = 1\naccelerometer_mass_kg = 0\n")
                   .empty());
+}
+
+// What a record states is no assumption.
+TEST(HitsToml, AssumesNoUnitThatIsStated) {
+  const auto keys = [](const HitsFile& file) {
+    std::vector<std::string> out;
+    for (const Assumption& one : file.assumed) out.push_back(one.key);
+    return out;
+  };
+  const std::string mass = "acquisition.accelerometer_mass_kg";
+  EXPECT_EQ(keys(NamedColumns{}.read()), std::vector<std::string>{mass});
+  EXPECT_EQ(keys(NamedColumns{.force = "force"}.read()),
+            (std::vector<std::string>{"acquisition.force_mv_per_n", mass}));
+  EXPECT_EQ(keys(NamedColumns{.response = "acc x (front)"}.read()),
+            (std::vector<std::string>{"acquisition.response", "acquisition.response_mv_per_m_per_s2", mass}));
+  const std::string sensors = "response = \"acceleration\"\nforce_mv_per_n = 2.5\nresponse_mv_per_g = 100\n";
+  EXPECT_EQ(keys(NamedColumns{.force = "force_v", .response = "ax_v", .acquisition = sensors}.read()),
+            std::vector<std::string>{mass});
+  EXPECT_EQ(keys(NamedColumns{.force = "force_v", .response = "ax", .acquisition = sensors}.read()),
+            (std::vector<std::string>{"acquisition.voltage_unit", mass}));
+  // A universal file states N and m/s²; without a unit, and without data set 164, nothing does.
+  const test::Folder folder;
+  io::UffFunction force, response;
+  force.type = response.type = 1;
+  force.abscissa = response.abscissa = Eigen::VectorXd::LinSpaced(64, 0.0, 63.0 / 1024.0);
+  force.values = response.values = Eigen::VectorXd::LinSpaced(64, 0.0, 1.0).cast<std::complex<double>>();
+  force.numerator = {.type = 13, .label = "Hammer"};
+  response.numerator = {.type = 12, .label = "Tip"};
+  const std::string text = io::format_uff({force, response}, false);
+  const auto read = [&](const std::string& content) {
+    folder.file("a.uff", content);
+    return read_hits(folder.file("hits.toml",
+                                 "[[hits]]\nfile = \"a.uff\"\nforce = \"Hammer\"\nforce_direction = \"x\"\n"
+                                 "responses = { x = \"Tip\" }\n"));
+  };
+  EXPECT_EQ(keys(read(text)), std::vector<std::string>{mass});
+  EXPECT_EQ(keys(read(text.substr(text.find("    -1\n    58")))),
+            (std::vector<std::string>{"acquisition.response", "acquisition.force_mv_per_n",
+                                      "acquisition.response_mv_per_m_per_s2", mass}));
+}
+
+// A column in mV is in mV, whatever the file leaves out; it read as V before.
+TEST(HitsToml, TakesTheVoltageThatARecordStates) {
+  const std::string sensors = "force_mv_per_n = 2.5\nresponse_mv_per_g = 100\n";
+  const HitsFile file = NamedColumns{.force = "force_mv", .response = "ax_v", .acquisition = sensors}.read();
+  EXPECT_DOUBLE_EQ(file.hits[0].force_n(1), 0.5 / 2.5);
+  EXPECT_NEAR(file.hits[0].responses[0].samples(1), 3.0 * 10.0 * 9.80665, 1e-10);
+  EXPECT_EQ(file.notes, std::vector<std::string>{"Column force_mv is in mV by its name."});
+  const std::string in_mv = "voltage_unit = \"mV\"\n" + sensors;
+  const std::string said = NamedColumns{.force = "force_v", .response = "ax_mv", .acquisition = in_mv}.rejection();
+  EXPECT_NE(said.find("is in V by its name, and acquisition.voltage_unit says another unit"), std::string::npos)
+      << said;
+  EXPECT_NEAR(
+      NamedColumns{.force = "force_mv", .response = "ax_v", .acquisition = "response_voltage_unit = \"V\"\n" + in_mv}
+          .read()
+          .hits[0]
+          .responses[0]
+          .samples(1),
+      3.0 * 10.0 * 9.80665, 1e-10);
 }
 
 TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {

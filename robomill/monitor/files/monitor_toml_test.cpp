@@ -253,7 +253,14 @@ TEST(RecordingsToml, ReadsLabelsAndOnsets) {
   EXPECT_TRUE(file.recordings[2].chatter);
   EXPECT_NEAR(file.recordings[2].spindle_speed_rad_per_s, 4500.0 * units::rpm, 1e-9);
   EXPECT_NEAR(file.recordings[3].spindle_speed_rad_per_s, 3000.0 * units::rpm, 1e-9);
-  EXPECT_EQ(file.recordings[3].file, folder.at("d.wav"));
+  EXPECT_EQ(file.recordings[3].files, std::vector<std::filesystem::path>{folder.at("d.wav")});
+}
+
+TEST(RecordingsToml, TakesSeveralFilesOfARecording) {
+  const test::Folder folder;
+  const RecordingsFile file = read_recordings(folder.file(
+      "r.toml", std::string(least) + four + "[[recordings]]\nfile = [\"x.wav\", \"y.wav\"]\nlabel = \"stable\"\n"));
+  EXPECT_EQ(file.recordings[4].files, (std::vector<std::filesystem::path>{folder.at("x.wav"), folder.at("y.wav")}));
 }
 
 TEST(RecordingsToml, RejectsWhatCannotCalibrate) {
@@ -270,6 +277,9 @@ TEST(RecordingsToml, RejectsWhatCannotCalibrate) {
   expect("[[recordings]]\nfile = \"c.wav\"\nlabel = \"loud\"\n", "r.toml:6: recordings[1].label = \"loud\"");
   expect(stable + "onset_s = 1\n", "is of chatter");
   expect(std::string(four) + "spindle_speed_rpm = 0\n", "must be > 0");
+  expect("[[recordings]]\nfile = [\"c.wav\", \"c.wav\"]\nlabel = \"stable\"\n", "r.toml:5: recordings[1].file");
+  expect("[[recordings]]\nfile = [\"c.wav\", \"c.wav\"]\nlabel = \"stable\"\n", "names a file twice");
+  expect("[[recordings]]\nlabel = \"stable\"\n", "recordings[1].file: is missing");
   expect(std::string("[calibration]\nfalse_alarm_rate = 1\n") + four, "must be >= 0 and < 1");
 }
 

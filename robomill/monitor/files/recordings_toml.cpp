@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/joined_records.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
@@ -32,7 +33,13 @@ const io::Schema<LabelledRecording>& labelled_recording_table() {
   static const io::Schema<LabelledRecording> table(
       "recordings",
       "recordings of which it is known whether they hold chatter; at least two of each: half of them verify",
-      {io::key("file", &LabelledRecording::file, "a recording").required(),
+      {io::declared<LabelledRecording>("file", io::Holds::path, "a recording; a list of files where channels are apart",
+                                       1)
+           .or_one()
+           .required()
+           .read_by([](io::TomlFile& file, const std::string& path, LabelledRecording& out) {
+             io::read_record_files(file, path, out.files);
+           }),
        io::key("label", &LabelledRecording::chatter, labels, "what it holds").required(),
        io::key("onset_s", &LabelledRecording::onset_s, "of chatter, where it is known").at_least(0.0),
        io::key("spindle_speed_rpm", &LabelledRecording::spindle_speed_rad_per_s, "in place of the process'")
@@ -78,14 +85,15 @@ std::vector<Recording> read_samples(RecordingsFile& file, Progress& progress) {
   std::vector<Recording> out;
   progress.start("recordings", file.recordings.size());
   for (const LabelledRecording& labelled : file.recordings) {
-    const auto source = io::open_samples(labelled.file, file.monitor.columns);
+    const auto source = io::open_samples(labelled.files, file.monitor.columns);
     if (options.sample_rate_hz <= 0.0) {
       options.sample_rate_hz = source->sample_rate_hz();
       validate(file.monitor);
       file.monitor.columns.sample_rate_hz = options.sample_rate_hz;
     }
     Recording recording;
-    recording.name = labelled.file.string();
+    for (const std::filesystem::path& part : labelled.files)
+      recording.name += (recording.name.empty() ? "" : " + ") + part.string();
     recording.chatter = labelled.chatter;
     recording.onset_s = labelled.onset_s;
     io::SampleBlock block;

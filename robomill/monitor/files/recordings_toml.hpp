@@ -12,7 +12,7 @@ namespace robomill::monitor {
 
 /// A recording with its label: chatter or stable.
 struct LabelledRecording {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;  ///< one, or several with the channels apart
   bool chatter = false;
   double onset_s = std::numeric_limits<double>::quiet_NaN();  ///< of chatter [s]; NaN: unknown
   double spindle_speed_rad_per_s = 0.0;                       ///< [rad/s]; 0: unknown

@@ -5,13 +5,17 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <cmath>
 #include <complex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/records/mat.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/system/confinement.hpp"
+#include "robomill/serve/files/inspect.hpp"
 #include "robomill/serve/files/named_files.hpp"
 #include "testing/support.hpp"
 
@@ -131,6 +135,54 @@ TEST(FileKindTest, FrfsWithoutAHeaderAreNoRecords) {
   io::write_mat(place.at("hit.mat"), {{.name = "force", .re = values}, {.name = "acceleration", .re = values}});
   EXPECT_EQ(kind_of_file(place.at("tip.mat")).kind, "frf");
   EXPECT_EQ(kind_of_file(place.at("hit.mat")).kind, "record");
+}
+
+TEST(FileKindTest, TrajectoriesAreNoRecords) {
+  const test::Folder place;
+  EXPECT_EQ(kind_of_file(place.file("hit.h5", "\x89HDF\r\n force")).kind, "record");
+  EXPECT_EQ(kind_of_file(place.file("path.h5", "\x89HDF\r\n sample_period_s")), (FileKind{"result", "trajectory"}));
+  for (const std::string_view ending : io::record_endings()) {
+    const std::string kind = kind_of_file(place.file("a" + std::string(ending), "1 2\n2 3\n3 5\n")).kind;
+    EXPECT_TRUE(kind == "record" || kind == "frf") << ending << " " << kind;
+  }
+}
+
+// A hit whose force and response are in two files is one, once both are there.
+TEST(Inspect, FilesOfOneHitAreDescribedTogether) {
+  const test::Folder place;
+  fs::create_directories(place.at("taps"));
+  const auto put = [&](const char* name, const char* header, bool force) {
+    std::string text = header;
+    for (int i = 0; i < 1000; ++i) {
+      const double value = force     ? (i >= 150 && i < 160 ? 100.0 * std::sin(0.314159 * (i - 150)) : 0.0)
+                           : i < 150 ? 0.0
+                                     : std::exp(-0.02 * (i - 150)) * std::sin(0.4 * (i - 150));
+      text += fmt::format("{:.6f} {:.9f}\n", 1e-4 * i, value);
+    }
+    return place.file(std::string("taps/") + name, text);
+  };
+  const fs::path force = put("hit1_force.txt", "time_s force_n\n", true);
+  const io::Json alone = inspect(force);
+  EXPECT_EQ(alone["kind"], "record");
+  EXPECT_TRUE(alone["files"].empty());
+  EXPECT_EQ(alone["columns"].size(), 2U);
+  const fs::path response = put("hit1_accel.txt", "time_s ay_g\n", false);
+  put("hit2_accel.txt", "time_s ay_g\n", false);
+  for (const fs::path& file : {force, response}) {
+    const io::Json both = inspect(file);
+    EXPECT_EQ(both["files"], io::Json({"hit1_force.txt", "hit1_accel.txt"})) << both;
+    ASSERT_EQ(both["columns"].size(), 2U) << both;
+    EXPECT_EQ(both["columns"][0]["name"], "force_n");
+    EXPECT_EQ(both["columns"][0]["guess"], "force");
+    EXPECT_EQ(both["columns"][1]["name"], "ay_g");
+    EXPECT_EQ(both["columns"][1]["guess"], "response");
+    EXPECT_EQ(both["direction_guess"], "y");
+    EXPECT_NEAR(both["sample_rate_hz"].get<double>(), 1e4, 1e-3);
+    EXPECT_EQ(both["time"], "time_s");
+    EXPECT_TRUE(both["questions"].empty()) << both["questions"];
+  }
+  // Neither does the other's file count, nor one that is a hit by itself.
+  EXPECT_TRUE(inspect(place.at("taps/hit2_accel.txt"))["files"].empty());
 }
 
 TEST(FileKindTest, TextsAreRecordsOnlyWhereTheyHoldNumbers) {

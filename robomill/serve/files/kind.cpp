@@ -13,6 +13,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/records/mat.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/files/schemas.hpp"
@@ -232,13 +233,30 @@ FileKind kind_of_text(const Beginning& file) {
   return known;
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 26> kinds_by_ending = {
-    {{".ngc", "program"},  {".nc", "program"},  {".gcode", "program"}, {".tap", "program"},       {".apt", "program"},
-     {".cls", "program"},  {".cl", "program"},  {".ncl", "program"},   {".aptsource", "program"}, {".uff", "frf"},
-     {".unv", "frf"},      {".uf", "frf"},      {".wav", "record"},    {".lvm", "record"},        {".tdms", "record"},
-     {".npy", "record"},   {".npz", "record"},  {".hdf", "record"},    {".html", "report"},       {".jsonl", "record"},
-     {".h5", "result"},    {".hdf5", "result"}, {".src", "result"},    {".mod", "result"},        {".script", "result"},
-     {".servoj", "result"}}};
+/// A trajectory of robomill states its period near its beginning.
+FileKind kind_of_hdf5(const Beginning& file) {
+  if (file.text.find("sample_period_s") == std::string::npos) return {.kind = "record"};
+  return {.kind = "result", .document = "trajectory"};
+}
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kinds_by_ending = {{{".ngc", "program"},
+                                                                                            {".nc", "program"},
+                                                                                            {".gcode", "program"},
+                                                                                            {".tap", "program"},
+                                                                                            {".apt", "program"},
+                                                                                            {".cls", "program"},
+                                                                                            {".cl", "program"},
+                                                                                            {".ncl", "program"},
+                                                                                            {".aptsource", "program"},
+                                                                                            {".uff", "frf"},
+                                                                                            {".unv", "frf"},
+                                                                                            {".uf", "frf"},
+                                                                                            {".html", "report"},
+                                                                                            {".jsonl", "record"},
+                                                                                            {".src", "result"},
+                                                                                            {".mod", "result"},
+                                                                                            {".script", "result"},
+                                                                                            {".servoj", "result"}}};
 
 }  // namespace
 
@@ -273,6 +291,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
     return out;
   }
   if (ending == ".mat") return {.kind = kind_of_mat(path)};
+  if (ending == ".h5" || ending == ".hdf5") return kind_of_hdf5(peek(path));
   if (ending == ".json") return kind_of_json(peek(path).text);
   for (const char* text : {".csv", ".txt", ".dat", ".asc"}) {
     if (ending == text) return kind_of_text(peek(path));
@@ -280,6 +299,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
   for (const auto& [known, kind] : kinds_by_ending) {
     if (ending == known) return {.kind = std::string(kind), .document = kind == "result" ? "trajectory" : ""};
   }
+  if (io::is_read_as_record(path)) return {.kind = "record"};
   return {};
 }
 

@@ -58,7 +58,7 @@ describe('what is sent', () => {
 
 it('fills in what a file that is no recording has not', async () => {
   const { api } = serverWith(json({ kind: 'program' }));
-  expect(await api.inspect('part.ngc')).toEqual({ kind: 'program', columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [] });
+  expect(await api.inspect('part.ngc')).toEqual({ kind: 'program', columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [], files: [], time: null });
 });
 
 describe('what goes wrong', () => {

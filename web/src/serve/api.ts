@@ -97,7 +97,7 @@ export function openApi({ token }: Pick<ServeConfig, 'token'>, send: (path: stri
     check: async (path: string, text: string, signal?: AbortSignal) => wholeFault(await post<CheckAnswer>('/api/check', { path, text }, signal)),
     edit: (text: string, key: string, value: Value, signal?: AbortSignal) => post<{ text: string }>('/api/edit', { text, key, value }, signal),
     async inspect(path: string, signal?: AbortSignal): Promise<Inspection> {
-      const nothing = { columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [] };
+      const nothing = { columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [], files: [], time: null };
       return { ...nothing, ...(await post<Pick<Inspection, 'kind'> & Partial<Inspection>>('/api/inspect', { path }, signal)) };
     },
     /** Of a job. */

@@ -168,7 +168,7 @@ export function App({ config }: { config: ServeConfig }) {
   const known = readable(overviews);
   const job = known.find(({ file }) => file === chosen) ?? null;
   const take = (files: File[]) => {
-    if (route.view === 'overview') return received.take(files, job ? belongsTo(api, job) : undefined);
+    if (route.view === 'overview') return received.take(files, job ? belongsTo(api, job, folder?.record_endings ?? []) : undefined);
     received.take(files);
     goTo('files');
   };

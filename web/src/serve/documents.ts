@@ -89,6 +89,7 @@ export interface FolderState {
   folder: string;
   files: FileEntry[];
   files_left_out: number;
+  record_endings: string[]; // ".csv", in lower case
   jobs: Job[];
 }
 
@@ -118,6 +119,8 @@ export interface Inspection {
   sample_rate_hz: Num;
   direction_guess: string | null;
   questions: string[];
+  files: string[]; // beside it, of one hit: the force's first; empty: it is a record by itself
+  time: string | null; // of several files the column of time, where it has to be given
 }
 
 export interface LobesRequest {

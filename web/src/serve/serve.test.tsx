@@ -33,6 +33,7 @@ const folder: FolderState = {
   folder: 'shop',
   files: [file('lobes.toml', 'lobes'), file('a/hits.toml', 'hits'), file('job.toml', 'job'), file('x_1.csv', 'record'), file('part.ngc', 'program')],
   files_left_out: 2,
+  record_endings: ['.csv'],
   jobs: [job],
 };
 
@@ -72,13 +73,21 @@ describe('files', () => {
       { name: 'ch1', unit: 'V', guess: 'force' as const },
       { name: 'ch2', unit: 'g', guess: 'response' as const },
     ];
-    const inspection = { kind: 'record' as const, columns, rows: 4096, sample_rate_hz: 51200, direction_guess: 'y', questions: ['What is the sensitivity of the hammer?'] };
+    const inspection = { kind: 'record' as const, columns, rows: 4096, sample_rate_hz: 51200, direction_guess: 'y', questions: ['What is the sensitivity of the hammer?'], files: [], time: null };
     const html = shown(<Arrivals arrivals={[{ name: 'tap.csv', path: 'tap-2.csv', inspection, error: null }]} clear={() => {}} forms={new Map()} taken={['hits.toml']} />);
     for (const part of ['tap-2.csv since there is a tap.csv already', '4096 rows', 'What is the sensitivity of the hammer?', 'Sensitivity of the hammer (mV per N)', 'value="hits-2.toml"', 'The force is in volts']) expect(html).toContain(part);
     expect(html).toMatch(/<option value="y" selected/);
   });
+  it('that are one hit together are asked about together', () => {
+    const columns = [{ name: 'f', unit: 'N', guess: 'force' as const }, { name: 'a', unit: 'g', guess: 'response' as const }];
+    const inspection = { kind: 'record' as const, columns, rows: 9, sample_rate_hz: 100, direction_guess: 'y', questions: [], files: ['f.txt', 'a.txt'], time: null };
+    const alone = { ...inspection, columns: [columns[0]!], files: [] };
+    const html = shown(<Arrivals arrivals={[{ name: 'f.txt', path: 'f.txt', inspection: alone, error: null }, { name: 'a.txt', path: 'a.txt', inspection, error: null }]} clear={() => {}} forms={new Map()} taken={[]} />);
+    for (const part of ['; one hit with f.txt', 'A recording: f.txt + a.txt', '[&quot;f.txt&quot;, &quot;a.txt&quot;]']) expect(html.replaceAll('"f.txt"', '&quot;f.txt&quot;').replaceAll('"a.txt"', '&quot;a.txt&quot;')).toContain(part);
+    expect(html.match(/data-panel="hits-form"/g)).toHaveLength(1);
+  });
   it('keep their forms and answers while others are on their way', () => {
-    const inspection = { kind: 'record' as const, columns: [{ name: 'f', unit: 'N', guess: 'force' as const }, { name: 'a', unit: 'g', guess: 'response' as const }], rows: 9, sample_rate_hz: 100, direction_guess: 'y', questions: [] };
+    const inspection = { kind: 'record' as const, columns: [{ name: 'f', unit: 'N', guess: 'force' as const }, { name: 'a', unit: 'g', guess: 'response' as const }], rows: 9, sample_rate_hz: 100, direction_guess: 'y', questions: [], files: [], time: null };
     const forms = new Map();
     const one = { name: 'a.csv', path: 'a.csv', inspection, error: null };
     const view = (arrivals: Parameters<typeof Arrivals>[0]['arrivals']) => shown(<Arrivals arrivals={arrivals} clear={() => {}} forms={forms} taken={[]} />);
@@ -89,7 +98,7 @@ describe('files', () => {
     for (const part of ['on its way', '2 recordings with the same columns', 'value="mine.toml"', 'force_direction = &quot;-z&quot;', 'force_direction = &quot;y&quot;']) expect(later.replaceAll('"-z"', '&quot;-z&quot;').replaceAll('= "y"', '= &quot;y&quot;')).toContain(part);
   });
   it('keep what is known of a file that is looked at again', () => {
-    const inspection = { kind: 'program' as const, columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [] };
+    const inspection = { kind: 'program' as const, columns: [], rows: null, sample_rate_hz: null, direction_guess: null, questions: [], files: [], time: null };
     const known = [{ name: 'a', path: 'a', inspection, error: null }, { name: 'b', path: 'b', inspection: null, error: new ApiError(500, faultOf('x')) }];
     expect(withArrival(known, 'a', 'a')).toEqual(known);
     expect(withArrival(known, 'b', 'b')[1]).toEqual({ name: 'b', path: 'b', inspection: null, error: null });

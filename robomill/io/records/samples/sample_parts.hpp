@@ -61,7 +61,8 @@ void check_rate(double own_hz, double wanted_hz, double tolerance, const std::st
 [[nodiscard]] std::unique_ptr<SampleSource> raw_source(std::unique_ptr<ByteReader> bytes, const SampleColumns& columns,
                                                        const std::string& where, bool is_int16);
 [[nodiscard]] std::unique_ptr<SampleSource> wav_source(const std::filesystem::path& path, const SampleColumns& columns);
-[[nodiscard]] std::unique_ptr<SampleSource> record_source(const std::filesystem::path& path,
+/// Held whole; several files are joined (io/joined_records.hpp).
+[[nodiscard]] std::unique_ptr<SampleSource> record_source(const std::vector<std::filesystem::path>& files,
                                                           const SampleColumns& columns);
 
 }  // namespace robomill::io

@@ -63,13 +63,9 @@ InvalidInput says_too_little(const std::string& file, const std::string& what, c
       fmt::format("Write {} with these lines, and run robomill frf {}:{}", document_name, document_name, indented));
 }
 
-bool names_unit(const ColumnGuess& column) {
-  return !column.unit.empty() && column.unit != "-";
-}
-
 /// A unit that is stated and not known, which is not to be read as SI.
 std::string unknown_unit(const ColumnGuess& column) {
-  if (!names_unit(column) || column.volts > 0.0) return {};
+  if (!states_unit(column) || column.volts > 0.0) return {};
   const io::SiFactor si = io::parse_unit(column.unit);
   const bool known = !si.is_ratio && si.quantity != io::Quantity::unknown;
   return known ? std::string() : fmt::format("what \"{}\" of column {} is", column.unit, column.name);
@@ -106,13 +102,6 @@ std::vector<std::string> open_questions(const FoundHits& found) {
 
 /// What is taken that the records do not say.
 void list_assumed(const FoundHits& found, HitsFile& out) {
-  const auto all = [&](Role role) {
-    return std::ranges::all_of(found.hits, [&](const FoundHit& hit) { return names_unit(*hit.first(role)); });
-  };
-  std::erase_if(out.assumed, [&](const Assumption& one) {
-    const bool of_response = one.key == "acquisition.response" || one.key.starts_with("acquisition.response_mv");
-    return (one.key == "acquisition.force_mv_per_n" && all(Role::force)) || (of_response && all(Role::response));
-  });
   std::vector<Assumption> taken;
   const auto add = [&](const std::string& what, const std::string& value, const char* key) {
     taken.push_back({.what = what, .taken = value, .key = key, .file = document_name});
@@ -140,7 +129,7 @@ void list_assumed(const FoundHits& found, HitsFile& out) {
 
 /// Numbers without a unit that may as well be volts.
 void require_newtons(const FoundHits& found, const HitsFile& read, const std::string& lines) {
-  if (std::ranges::all_of(found.hits, [](const FoundHit& hit) { return names_unit(*hit.first(Role::force)); })) return;
+  if (std::ranges::all_of(found.hits, [](const FoundHit& hit) { return states_unit(*hit.first(Role::force)); })) return;
   double highest_n = 0.0;
   for (const Hit& hit : read.hits) highest_n = std::max(highest_n, hit.force_n.cwiseAbs().maxCoeff());
   if (highest_n >= least_force_n) return;

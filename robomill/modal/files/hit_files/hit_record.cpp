@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -14,47 +13,6 @@
 
 namespace robomill::modal {
 namespace {
-
-bool is_number(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-bool has_name(const io::Record& record, std::string_view name) {
-  return !name.empty() && std::ranges::find(record.names, name) != record.names.end();
-}
-
-std::string files_of(const std::vector<io::Record>& parts, std::string_view between) {
-  std::string out;
-  for (const io::Record& part : parts) {
-    out += fmt::format("{}{}", out.empty() ? "" : between, part.file.filename().string());
-  }
-  return out;
-}
-
-/// "force.txt has Time, Hammer; accel.txt has 2 columns"
-std::string columns_of(const std::vector<io::Record>& parts) {
-  std::string out;
-  for (const io::Record& part : parts) {
-    std::string names;
-    for (const std::string& name : part.names) {
-      if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
-    }
-    if (names.empty()) names = fmt::format("{} columns", part.columns.size());
-    out += fmt::format("{}{} has {}", out.empty() ? "" : "; ", part.file.filename().string(), names);
-  }
-  return out;
-}
-
-/// The only file in which a column is looked for that several have, or that has no name; none: it is not determined.
-const io::Record* own_part(const std::vector<io::Record>& parts, bool is_force) {
-  if (is_force) return &parts.front();
-  return parts.size() == 2 ? &parts.back() : nullptr;
-}
-
-InvalidInput ambiguous(const std::vector<io::Record>& parts, const std::string& text, const std::string& rule) {
-  return InvalidInput(parts.front().file.string(), rule,
-                      fmt::format("Write the file before it: \"{}:{}\"", parts.back().file.filename().string(), text));
-}
 
 /// The column of the time as it is meant for one of several files: "force.txt:1" is of that one alone.
 std::string time_of(const std::filesystem::path& file, const std::vector<std::filesystem::path>& files,
@@ -104,31 +62,14 @@ bool has_own_units(const io::Record& record) {
   return format != io::Format::uff && format != io::Format::wav;
 }
 
+std::optional<std::size_t> own_part(const std::vector<io::Record>& parts, bool is_force) {
+  if (is_force) return 0;
+  return parts.size() == 2 ? std::optional<std::size_t>(1) : std::nullopt;
+}
+
 HitRecord::Column HitRecord::column(const std::string& text, bool is_force) const {
-  if (parts.size() == 1) return {.part = &parts.front(), .place = parts.front().place(text)};
-  for (const io::Record& part : parts) {
-    const std::string prefix = part.file.filename().string() + ":";
-    if (text.starts_with(prefix) && text.size() > prefix.size() && !has_name(part, text)) {
-      return {.part = &part, .place = part.place(text.substr(prefix.size()))};
-    }
-  }
-  const io::Record* const own = own_part(parts, is_force);
-  const auto having = std::ranges::count_if(parts, [&](const io::Record& part) { return has_name(part, text); });
-  if (having == 1) {
-    const auto part = std::ranges::find_if(parts, [&](const io::Record& one) { return has_name(one, text); });
-    return {.part = &*part, .place = part->place(text)};
-  }
-  if (having > 1) {
-    if (own == nullptr || !has_name(*own, text)) {
-      throw ambiguous(parts, text, fmt::format("has a column {}, as another of its files has", text));
-    }
-    return {.part = own, .place = own->place(text)};
-  }
-  if (is_number(text)) {
-    if (own == nullptr) throw ambiguous(parts, text, fmt::format("column {} may be of any of the files", text));
-    return {.part = own, .place = own->place(text)};
-  }
-  throw InvalidInput(files_of(parts, ", "), "have no column " + text, columns_of(parts));
+  const io::PartColumn found = io::find_column(parts, text, own_part(parts, is_force));
+  return {.part = &parts[found.part], .place = found.place};
 }
 
 HitRecord read_hit_record(const std::vector<std::filesystem::path>& files, const HitRecordOptions& options) {
@@ -146,28 +87,13 @@ HitRecord read_hit_record(const std::vector<std::filesystem::path>& files, const
     part.sample_rate_hz = io::rate_of(part, options.given_rate_hz, options.rate_key, out.notes);
     parts.push_back(std::move(part));
   }
-  if (!has_time) {
-    throw InvalidInput(files_of(parts, ", "), fmt::format("have no column {} of time", options.time),
-                       columns_of(parts));
-  }
+  if (!has_time) throw io::no_column(parts, options.time + " of time");
   io::JoinedRecords joined = io::join_records(std::move(parts), std::move(times));
   std::ranges::copy(joined.notes, std::back_inserter(out.notes));
   out.parts = std::move(joined.parts);
   out.sample_rate_hz = joined.sample_rate_hz;
   out.begin_s = joined.begin_s;
   return out;
-}
-
-std::string column_name(const std::vector<io::Record>& parts, std::size_t part, std::size_t place, bool is_force) {
-  const io::Record& record = parts[part];
-  std::string name = place < record.names.size() ? record.names[place] : std::string();
-  // Of columns of one name only the number tells which.
-  if (name.empty() || std::ranges::count(record.names, name) > 1) name = std::to_string(place + 1);
-  if (parts.size() == 1) return name;
-  const bool elsewhere = std::ranges::any_of(
-      parts, [&](const io::Record& other) { return &other != &record && (is_number(name) || has_name(other, name)); });
-  if (!elsewhere || own_part(parts, is_force) == &record) return name;
-  return record.file.filename().string() + ":" + name;
 }
 
 }  // namespace robomill::modal

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,11 +42,8 @@ struct HitRecordOptions {
 [[nodiscard]] HitRecord read_hit_record(const std::vector<std::filesystem::path>& files,
                                         const HitRecordOptions& options = {});
 
-/// How hits.toml names a column of a record, so that HitRecord::column finds it: by its name where that is its own,
-/// else by its number, of three files or more with the file's name before it.
-/// @param part, place  both from 0
-[[nodiscard]] std::string column_name(const std::vector<io::Record>& parts, std::size_t part, std::size_t place,
-                                      bool is_force);
+/// The file in which hits.toml looks up a number, or a name that several files have; nothing: it must be given.
+[[nodiscard]] std::optional<std::size_t> own_part(const std::vector<io::Record>& parts, bool is_force);
 
 /// Whether a file has names and units that its reader did not convert.
 [[nodiscard]] bool has_own_units(const io::Record& record);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/joined_records.hpp"
 #include "robomill/modal/files/hit_files/hit_record.hpp"
 
 namespace robomill::modal {
@@ -84,10 +85,9 @@ void order(std::vector<fs::path>& files, std::vector<io::Record>& parts) {
 }
 
 /// The column of time of each file, as read_hit_record takes it for all of them.
-std::string common_time(const std::vector<io::Record>& parts) {
+std::string common_time(const std::vector<HitGuess>& parts) {
   std::vector<std::string> times;
-  for (const io::Record& part : parts) {
-    const HitGuess guess = guess_hit(part);
+  for (const HitGuess& guess : parts) {
     const std::vector<std::size_t> found = guess.with(Role::time);
     if (found.empty()) continue;
     times.push_back(guess.columns[found.front()].name);
@@ -138,13 +138,19 @@ std::optional<FoundHit> found_in_set(std::vector<fs::path>& files) {
   std::ranges::stable_partition(files, is_named_force);
   std::ranges::stable_partition(parts, [](const io::Record& part) { return is_named_force(part.file); });
   order(files, parts);
-  FoundHit hit{.format = io::format_of(files.front()), .guess = guess_hit(side_by_side(parts))};
+  FoundHit hit{.format = io::format_of(files.front()),
+               .si_assumed = std::ranges::any_of(parts, &io::Record::si_assumed),
+               .guess = guess_hit(side_by_side(parts))};
   if (!hit.guess.is_hit()) return std::nullopt;
-  const std::string time = common_time(parts);
+  std::vector<HitGuess> apart;
+  for (const io::Record& part : parts) apart.push_back(guess_hit(part));
+  const std::string time = common_time(apart);
   for (std::size_t i = 0; i < hit.guess.columns.size(); ++i) {
     std::size_t place = i;
     const std::size_t part = part_of_column(parts, place);
-    hit.guess.columns[i].name = column_name(parts, part, place, hit.guess.columns[i].role == Role::force);
+    if (apart[part].columns[place].role == Role::time) hit.guess.columns[i].role = Role::time;
+    const bool is_force = hit.guess.columns[i].role == Role::force;
+    hit.guess.columns[i].name = io::column_name(parts, {.part = part, .place = place}, own_part(parts, is_force));
   }
   const HitRecord record = read_hit_record(files, {.time = time});
   hit.sample_rate_hz = hit.guess.sample_rate_hz = record.sample_rate_hz;

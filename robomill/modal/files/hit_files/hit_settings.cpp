@@ -8,6 +8,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/toml/edit.hpp"
+#include "robomill/modal/files/hits_toml.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -107,6 +108,38 @@ class AcquisitionSettings {
 
 std::vector<HitSetting> acquisition_settings(const FoundHit& hit) {
   return AcquisitionSettings(hit).all();
+}
+
+std::vector<Assumption> assumed_units(const UnstatedUnits& unstated, ResponseKind kind, const std::string& file) {
+  std::vector<Assumption> out;
+  if (unstated.force) {
+    out.push_back(
+        {.what = "Forces in records without a unit", .taken = "N", .key = "acquisition.force_mv_per_n", .file = file});
+  }
+  if (unstated.response) {
+    out.push_back({.what = "Responses in records without a unit",
+                   .taken = kind == ResponseKind::acceleration ? "m/s²"
+                            : kind == ResponseKind::velocity   ? "m/s"
+                                                               : "m",
+                   .key = fmt::format("acquisition.response_mv_per_{}", response_unit(kind)),
+                   .file = file});
+  }
+  return out;
+}
+
+std::vector<Assumption> assumed_units(const FoundHits& found, const std::string& file) {
+  if (found.hits.empty()) return {};
+  const std::vector<HitSetting> settings = acquisition_settings(found.hits.front());
+  const auto gives = [&](std::string_view key) {
+    return std::ranges::any_of(settings, [&](const HitSetting& one) { return one.key.starts_with(key); });
+  };
+  const auto is_unstated = [&](Role role) {
+    return std::ranges::any_of(found.hits,
+                               [&](const FoundHit& hit) { return hit.si_assumed || !states_unit(*hit.first(role)); });
+  };
+  return assumed_units({.force = !gives("force_mv_per_") && is_unstated(Role::force),
+                        .response = !gives("response_mv_per_") && is_unstated(Role::response)},
+                       found.hits.front().first(Role::response)->kind, file);
 }
 
 std::vector<HitSetting> row_settings(const FoundHit& hit) {

@@ -10,7 +10,7 @@ import { bytesText, Button, FaultText, Panel } from '../pieces';
 import { href } from '../route';
 import { isEditable, kindNames } from '../verbs';
 import { freeName, HitsForm, type HitsAnswers } from './hits_form';
-import { columnsOf, sameColumns } from './hits_text';
+import { asWhole, columnsOf, filesOf, sameColumns } from './hits_text';
 
 export interface Arrival {
   name: string; // it came with
@@ -132,10 +132,12 @@ function placeText({ name, path }: Pick<Arrival, 'name' | 'path'>): string {
 function describe({ name, path, inspection, error, note }: Arrival) {
   if (error) return <FaultText fault={error.fault} />;
   if (!inspection) return 'on its way';
+  const others = filesOf({ path, inspection }).filter((file) => file !== path);
   return (
     <>
       {kindNames[inspection.kind].toLowerCase()}
       {placeText({ name, path })}
+      {others.length > 0 && `; one hit with ${others.join(', ')}`}
       {note && `; ${note}`}
       {isEditable(path) && (
         <>
@@ -162,7 +164,7 @@ export function Arrivals({ arrivals, clear, forms, taken }: Omit<Received, 'desc
         </ul>
         <Button act={clear}>Clear the list</Button>
       </Panel>
-      {sameColumns(recordings).map((group) => (
+      {sameColumns(asWhole(recordings)).map((group) => (
         <HitsForm key={columnsOf(group[0]!)} recordings={group} forms={forms} taken={taken} />
       ))}
     </>

@@ -5,7 +5,7 @@ import { fixed } from '../../text';
 import { useAction, useServe } from '../context';
 import { Button, ErrorBox, Panel, Select, TextBox } from '../pieces';
 import { href } from '../route';
-import { columnsOf, directionOf, firstAnswers, force_units, hitsToml, isVoltage, missingAnswers, response_units, sensorUnit, type Answers, type Recording, type ResponseKind, type Role } from './hits_text';
+import { columnsOf, directionOf, filesOf, firstAnswers, force_units, hitsToml, isVoltage, missingAnswers, needsRate, response_units, sensorUnit, type Answers, type Recording, type ResponseKind, type Role } from './hits_text';
 
 const roles: { value: Role; name: string }[] = [
   { value: 'unused', name: 'not used' },
@@ -47,7 +47,7 @@ function Directions({ recordings, answers, answer }: QuestionsProps) {
       {recordings.map((recording) => (
         <Select
           key={recording.path}
-          label={recording.path}
+          label={filesOf(recording).join(' + ')}
           value={directionOf(answers, recording)}
           options={directions}
           choose={(direction) => answer({ directions: { ...answers.directions, [recording.path]: direction } })}
@@ -70,7 +70,7 @@ function Units({ answers, answer }: QuestionsProps) {
       )}
       <Select label="Unit of the force" value={answers.force_unit} options={named(force_units)} choose={(force_unit) => answer({ force_unit })} />
       {isVoltage(answers.force_unit) && <TextBox inputMode="decimal" label="Sensitivity of the hammer (mV per N)" help={sheet} value={answers.force_mv_per_n} type={(text) => answer({ force_mv_per_n: text })} />}
-      {!answers.roles.includes('time') && <TextBox inputMode="decimal" label="Sampling rate (Hz)" value={answers.sample_rate_hz} type={(text) => answer({ sample_rate_hz: text })} />}
+      {needsRate(answers) && <TextBox inputMode="decimal" label="Sampling rate (Hz)" value={answers.sample_rate_hz} type={(text) => answer({ sample_rate_hz: text })} />}
     </fieldset>
   );
 }
@@ -113,7 +113,7 @@ export function HitsForm({ recordings, forms, taken }: HitsFormProps) {
   };
   const asked = { recordings, answers, answer };
   return (
-    <Panel heading={recordings.length === 1 ? `A recording: ${recordings[0]!.path}` : `${recordings.length} recordings with the same columns`} name="hits-form">
+    <Panel heading={recordings.length === 1 ? `A recording: ${filesOf(recordings[0]!).join(' + ')}` : `${recordings.length} recordings with the same columns`} name="hits-form">
       <p class="lead">{rowsText(recordings[0]!)}. Are these hammer hits? Then say what robomill cannot know.</p>
       <Bullets texts={[...new Set(recordings.flatMap(({ inspection }) => inspection.questions))]} />
       <div class="questions">

@@ -1,9 +1,9 @@
 import { describe, expect, it } from 'vitest';
 import type { Inspection } from '../documents';
-import { firstAnswers, hitsToml, missingAnswers, relativeTo, sameColumns, type Recording } from './hits_text';
+import { asWhole, filesOf, firstAnswers, hitsToml, missingAnswers, relativeTo, sameColumns, type Recording } from './hits_text';
 
 function recording(path: string, columns: Inspection['columns'], more: Partial<Inspection> = {}): Recording {
-  return { path, inspection: { kind: 'record', columns, rows: 4096, sample_rate_hz: null, direction_guess: null, questions: [], ...more } };
+  return { path, inspection: { kind: 'record', columns, rows: 4096, sample_rate_hz: null, direction_guess: null, questions: [], files: [], time: null, ...more } };
 }
 
 const si = [
@@ -59,6 +59,44 @@ describe('a recording in volts without time', () => {
     expect(text).toContain('sample_rate_hz = 51200\nforce_mv_per_n = 2.25\nresponse_mv_per_g = 100\n');
     expect(text).toContain('responses = { -y = "ch \\"2\\"" }');
     expect(text).not.toContain('time =');
+  });
+});
+
+describe('force and response in files of their own', () => {
+  const columns = [
+    { name: 'Hammer', unit: 'N', guess: 'force' as const },
+    { name: 'Tip', unit: 'g', guess: 'response' as const, direction: 'x' },
+  ];
+  const files = ['hit1_force.txt', 'hit1_accel.txt'];
+  const alone = recording('taps/hit1_force.txt', [columns[0]!], { sample_rate_hz: 4000 });
+  const both = (path: string, more: Partial<Inspection> = {}) => recording(path, columns, { sample_rate_hz: 4000, files, ...more });
+  it('are one recording, whichever came first', () => {
+    const other = recording('taps/b.csv', si);
+    const whole = asWhole([alone, other, both('taps/hit1_accel.txt')]);
+    expect(whole.map(({ path }) => path)).toEqual(['taps/hit1_force.txt', 'taps/b.csv']);
+    expect(whole[0]!.inspection.columns).toHaveLength(2);
+    expect(asWhole([both('taps/hit1_force.txt'), both('taps/hit1_accel.txt')])).toHaveLength(1);
+    expect(filesOf(whole[0]!)).toEqual(['taps/hit1_force.txt', 'taps/hit1_accel.txt']);
+    expect(filesOf(other)).toEqual(['taps/b.csv']);
+  });
+  it('become one hit of a hits.toml, which leaves their rate to them', () => {
+    const hits = asWhole([alone, both('taps/hit1_accel.txt')]);
+    const answers = firstAnswers(hits);
+    expect(missingAnswers(answers)).toEqual([]);
+    expect(hitsToml('taps/hits.toml', hits, answers)).toBe(`[acquisition]
+response = "acceleration"
+response_mv_per_g = 1000  # the response is in g
+
+[[hits]]
+file = ["hit1_force.txt", "hit1_accel.txt"]
+force = "Hammer"
+force_direction = "x"
+responses = { x = "Tip" }
+`);
+    expect(hitsToml('hits.toml', [both('taps/hit1_force.txt', { time: 'Zeit' })], answers)).toContain('file = ["taps/hit1_force.txt", "taps/hit1_accel.txt"]\ntime = "Zeit"\n');
+  });
+  it('are asked for a rate that they do not say', () => {
+    expect(missingAnswers(firstAnswers([both('hit1_force.txt', { sample_rate_hz: null })]))).toEqual(['Without a time column the sampling rate is needed.']);
   });
 });
 

@@ -4,7 +4,7 @@ import type { ColumnGuess, Inspection } from '../documents';
 export type Role = 'unused' | 'time' | 'force' | 'x' | 'y' | 'z' | '-x' | '-y' | '-z'; // a direction: a response in it
 
 export interface Recording {
-  path: string;
+  path: string; // of several files the first
   inspection: Inspection;
 }
 
@@ -19,6 +19,7 @@ export interface Answers {
   response_unit: string;
   response_mv_per_unit: string; // as typed, per sensorUnit; where the response is in volts
   sample_rate_hz: string; // as typed; where there is no time
+  has_rate: boolean; // several files: they say it
 }
 
 /** A unit of a column, and the key of its sensitivity. Those of hits.toml are for records in volts; of another unit they say how many thousandths of it the key's unit is. */
@@ -57,6 +58,24 @@ export function isVoltage(unit: string): boolean {
 /** Names the columns of a recording. */
 export function columnsOf({ inspection }: Recording): string {
   return inspection.columns.map(({ name }) => name).join('\n');
+}
+
+/** The paths of a recording's files: its own, or those of force and responses apart. */
+export function filesOf({ path, inspection }: Recording): string[] {
+  const folder = path.slice(0, path.lastIndexOf('/') + 1);
+  return inspection.files.length === 0 ? [path] : inspection.files.map((name) => `${folder}${name}`);
+}
+
+/** Each once: files that are one hit together, in the place of each by itself. */
+export function asWhole(recordings: Recording[]): Recording[] {
+  const sets = new Map<string, Recording>(); // by each of their files
+  for (const recording of recordings) {
+    if (recording.inspection.files.length === 0) continue;
+    const files = filesOf(recording);
+    const whole = { ...recording, path: files[0]! };
+    for (const path of files) sets.set(path, whole);
+  }
+  return [...new Set(recordings.map((recording) => sets.get(recording.path) ?? recording))];
 }
 
 /** Recordings with the same columns are asked about once. */
@@ -110,12 +129,18 @@ export function firstAnswers(recordings: Recording[]): Answers {
     response_unit: knownUnit(response_units[response], unit),
     response_mv_per_unit: '',
     sample_rate_hz: rate === null ? '' : String(rate),
+    has_rate: recordings[0]!.inspection.files.length > 0 && rate !== null,
   };
 }
 
 /** Of the hammer's force. */
 export function directionOf({ directions }: Pick<Answers, 'directions'>, { path, inspection }: Recording): string {
   return directions[path] ?? inspection.direction_guess ?? 'x';
+}
+
+/** Whether hits.toml has to give the rate. */
+export function needsRate({ roles, has_rate }: Pick<Answers, 'roles' | 'has_rate'>): boolean {
+  return !has_rate && !roles.includes('time');
 }
 
 /** The unit that a sensor's sensitivity is asked for in: per g of an accelerometer. */
@@ -158,7 +183,7 @@ export function missingAnswers(answers: Answers): string[] {
   if (axes.length === 0) missing.push('At least one column must be a response.');
   if (new Set(axes).size < axes.length) missing.push('Two columns are responses in the same direction.');
   if (count('time') > 1) missing.push('Only one column can be the time.');
-  if (count('time') === 0 && !(Number(rate) > 0)) missing.push('Without a time column the sampling rate is needed.');
+  if (needsRate(answers) && !(Number(rate) > 0)) missing.push('Without a time column the sampling rate is needed.');
   if (force?.mv === null) missing.push('The force is in volts: its sensitivity is needed.');
   if (response?.mv === null) missing.push('The response is in volts: its sensitivity is needed.');
   return missing;
@@ -184,14 +209,16 @@ export function hitsToml(path: string, recordings: Recording[], answers: Answers
   const names = recordings[0]!.inspection.columns.map(({ name }) => name);
   const named = (role: Role) => quoted(names[roles.indexOf(role)] ?? '');
   const lines = ['[acquisition]', `response = ${quoted(response)}`];
-  if (!roles.includes('time')) lines.push(`sample_rate_hz = ${number(Number(rate))}`);
+  if (needsRate(answers)) lines.push(`sample_rate_hz = ${number(Number(rate))}`);
   for (const [name, sensor] of Object.entries(sensitivities(answers))) {
     if (sensor?.mv != null) lines.push(`${name}_mv_per_${sensor.per} = ${number(sensor.mv)}${sensor.remark === '' ? '' : `  # the ${name} is in ${sensor.remark}`}`);
   }
   const responses = roles.flatMap((role, i) => (/[xyz]$/.test(role) ? [`${role} = ${quoted(names[i]!)}`] : []));
   for (const recording of recordings) {
-    lines.push('', '[[hits]]', `file = ${quoted(relativeTo(path, recording.path))}`);
+    const files = filesOf(recording).map((file) => quoted(relativeTo(path, file)));
+    lines.push('', '[[hits]]', `file = ${files.length === 1 ? files[0] : `[${files.join(', ')}]`}`);
     if (roles.includes('time')) lines.push(`time = ${named('time')}`);
+    else if (recording.inspection.time !== null) lines.push(`time = ${quoted(recording.inspection.time)}`);
     lines.push(`force = ${named('force')}`, `force_direction = ${quoted(directionOf(answers, recording))}`, `responses = { ${responses.join(', ')} }`);
   }
   return lines.join('\n') + '\n';

@@ -38,6 +38,7 @@ const folder: FolderState = {
   folder: 'shop',
   files: [file('cell.toml', 'cell'), file('a/tip_x.uff', 'frf'), file('a/tip_y.uff', 'frf'), file('tap.csv', 'record'), file('part.ngc', 'program'), file('out/plan.json', 'result', 'plan'), file('lobes.json', 'result', 'lobes')],
   files_left_out: 0,
+  record_endings: ['.csv'],
   jobs: [],
 };
 

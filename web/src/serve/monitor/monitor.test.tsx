@@ -232,7 +232,7 @@ describe('the history', () => {
 });
 
 const file = (path: string, kind: FileEntry['kind']): FileEntry => ({ path, kind, bytes: 1, modified: '' });
-const folder: FolderState = { version: '', folder: 'shop', files: [file('a/monitor.toml', 'monitor'), file('cut.wav', 'record'), file('events.jsonl', 'record')], files_left_out: 0, jobs: [] };
+const folder: FolderState = { version: '', folder: 'shop', files: [file('a/monitor.toml', 'monitor'), file('cut.wav', 'record'), file('events.jsonl', 'record')], files_left_out: 0, record_endings: ['.csv', '.tdms'], jobs: [] };
 
 function shown(view: ComponentChildren, files = folder.files): string {
   const nothing = () => {};

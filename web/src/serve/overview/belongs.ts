@@ -10,9 +10,10 @@ export function folderOf(path: string): string {
 }
 
 /** Records go beside hits.toml, all else beside the job. By the name alone: the kind is known only after the file was sent. */
-export function folderFor(name: string, overview: Overview): string {
+export function folderFor(name: string, overview: Overview, recordEndings: string[]): string {
   const hits = stageOf(overview, 'hits')?.file ?? null;
-  return folderOf(hits !== null && /\.(csv|txt|dat|asc|mat|wav)$/i.test(name) ? hits : overview.file);
+  const isRecord = recordEndings.some((ending) => name.toLowerCase().endsWith(ending));
+  return folderOf(hits !== null && isRecord ? hits : overview.file);
 }
 
 const structure = ['hits', 'frf', 'modes', 'assembly'];
@@ -49,10 +50,10 @@ export interface Belongs {
   settle: (path: string, kind: FileKind) => Promise<string | null>;
 }
 
-export function belongsTo(api: Api, overview: Overview): Belongs {
+export function belongsTo(api: Api, overview: Overview, recordEndings: string[]): Belongs {
   const named = new Set<string>(); // of several files that are dropped together the first
   return {
-    folder: (name) => folderFor(name, overview),
+    folder: (name) => folderFor(name, overview, recordEndings),
     async settle(path, kind) {
       const key = keyFor(kind, { ...overview, names: [...overview.names, ...named] });
       if (key === null) return null;

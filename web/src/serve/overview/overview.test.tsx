@@ -39,7 +39,7 @@ const job = overview(
 
 const entry = (path: string, kind: FileEntry['kind']): FileEntry => ({ path, kind, bytes: 9, modified: '2026-11-27T18:57:00Z' });
 const run: Job = { id: 4, verb: 'plan', input: 'a/job.toml', output: 'a/out', state: 'done', exit: 3, task: '', fraction: 1, seconds: 2, error: null, summary: null, report: true };
-const folder: FolderState = { version: '', folder: 'shop', files: [entry('a/job.toml', 'job'), entry('z.toml', 'job'), entry('a/hits.toml', 'hits')], files_left_out: 0, jobs: [run] };
+const folder: FolderState = { version: '', folder: 'shop', files: [entry('a/job.toml', 'job'), entry('z.toml', 'job'), entry('a/hits.toml', 'hits')], files_left_out: 0, record_endings: ['.csv', '.tdms'], jobs: [run] };
 
 function shown(view: ComponentChildren, known: Overviews, some: Partial<FolderState> = {}): string {
   const nothing = () => {};
@@ -114,7 +114,8 @@ describe('the chosen job', () => {
 describe('dropped files', () => {
   it('go beside hits.toml or the job', () => {
     const apart = overview('job.toml', { hits: { state: 'given', file: 'taps/hits.toml' } });
-    expect([folderFor('x_1.CSV', apart), folderFor('part.ngc', apart), folderFor('x_1.csv', overview('a/job.toml'))]).toEqual(['taps/', '', 'a/']);
+    const place = (name: string, of = apart) => folderFor(name, of, folder.record_endings);
+    expect([place('x_1.CSV'), place('x_1.tdms'), place('part.ngc'), place('x_1.csv', overview('a/job.toml'))]).toEqual(['taps/', 'taps/', '', 'a/']);
   });
   it('are named in the job where it has nothing in their place', () => {
     const blank = overview('job.toml');
@@ -134,7 +135,7 @@ describe('dropped files', () => {
       if (method === 'PUT') expect((headers as Record<string, string>)['If-Match']).toBe('"7"');
       return method === 'PUT' ? Response.json({ etag: '"8"' }) : new Response('[job]', { headers: { ETag: '"7"' } });
     };
-    const belongs = belongsTo(openApi({ token: '' }, send), overview('a/job.toml'));
+    const belongs = belongsTo(openApi({ token: '' }, send), overview('a/job.toml'), folder.record_endings);
     expect(await belongs.settle('a/part.ngc', 'program')).toBe('a/job.toml names it now as job.program');
     expect(await belongs.settle('a/other.ngc', 'program')).toBeNull();
     expect(sent.map(([request]) => request)).toEqual(['GET /api/file?path=a%2Fjob.toml', 'POST /api/edit', 'PUT /api/file?path=a%2Fjob.toml']);

@@ -77,7 +77,7 @@ const nothing = () => {};
 
 const job = (id: number, more: Partial<Job> = {}): Job => ({ id, verb: 'plan', input: 'job.toml', output: 'out', state: 'done', exit: 0, task: '', fraction: 1, seconds: 9, error: null, summary: null, report: true, ...more });
 const file = (path: string, kind: FileEntry['kind']): FileEntry => ({ path, kind, bytes: 1, modified: '' });
-const folder: FolderState = { version: '0.1.0', folder: 'shop', files: [file('job.toml', 'job'), file('a/face.toml', 'job')], files_left_out: 0, jobs: [] };
+const folder: FolderState = { version: '0.1.0', folder: 'shop', files: [file('job.toml', 'job'), file('a/face.toml', 'job')], files_left_out: 0, record_endings: ['.csv', '.tdms'], jobs: [] };
 
 function shown(view: ComponentChildren, more: Partial<Serve> = {}): string {
   const api = openApi({ token: '' }, () => new Promise(() => {}));

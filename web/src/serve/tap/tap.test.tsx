@@ -28,7 +28,7 @@ const tap: Tap = { id: 2, revision: 1, hits: 'a/hits.toml', stream, force_direct
 
 function shown(view: preact.ComponentChildren): string {
   const nothing = () => {};
-  const folder: FolderState = { version: '', folder: '', files: [], files_left_out: 0, jobs: [] };
+  const folder: FolderState = { version: '', folder: '', files: [], files_left_out: 0, record_endings: ['.csv', '.tdms'], jobs: [] };
   const serve: Serve = { api: openApi({ token: '' }), folder, verbs: [], tap, tookTap: nothing, announce: nothing, refresh: nothing, take: nothing };
   return renderToString(<ServeContext value={serve}>{view}</ServeContext>);
 }
