@@ -34,13 +34,14 @@ struct Cell {
   std::optional<robot::HybridMachine> hybrid = {};  ///< in the place of the arm
   std::string machine = {};  ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
                              ///< "xyzbc-head"; empty where not said
-  program::Rotary rotary = program::Rotary::machine;  ///< how the axis goes where those words turn
-  std::optional<int> program_tool = {};               ///< whose part of a program is read; none: it has one tool
-  double redundant_gamma_rad = 0.0;                   ///< turn of the flange about the tool's axis, robot::ToolPose
-  bool gamma_given = false;                           ///< that turn is prescribed; else it is free to choose
-  bool origin_given = true, length_given = true;      ///< of workpiece and tool; else they are taken for zero
-  std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
-  bool posture_asked = false;                         ///< they were asked for: nearness to them before margin
+  program::Rotary rotary = program::Rotary::machine;    ///< how the axis goes where those words turn
+  std::optional<int> program_tool = {};                 ///< whose part of a program is read; none: it has one tool
+  std::vector<program::WorkFrame> program_frames = {};  ///< of G-code, with their offsets in the control's table
+  double redundant_gamma_rad = 0.0;                     ///< turn of the flange about the tool's axis, robot::ToolPose
+  bool gamma_given = false;                             ///< that turn is prescribed; else it is free to choose
+  bool origin_given = true, length_given = true;        ///< of workpiece and tool; else they are taken for zero
+  std::vector<double> start_joints = {};                ///< where the arm stands first [rad]; empty where not said
+  bool posture_asked = false;                           ///< they were asked for: nearness to them before margin
   std::vector<double> home = {};  ///< start_joints, else those of the model's own cell; empty where neither is said
   std::string model = {};         ///< of the arm: one of known_arms(); empty where not by name
   std::string maker = {};         ///< of the arm: path::maker_kuka, …; empty where not known

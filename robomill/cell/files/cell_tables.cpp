@@ -1,7 +1,10 @@
 #include "robomill/cell/files/cell_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -175,6 +178,49 @@ void read_rotary(TomlFile& file, const std::string& path, Cell& out) {
   parse_word(file, path, [&] { out.rotary = program::parse_rotary(rotary); });
 }
 
+void read_frame_code(TomlFile& file, const std::string& path, program::WorkFrame& out) {
+  if (!file.text(path, out.code)) return;
+  parse_word(file, path, [&] { static_cast<void>(program::parse_work_frame(out.code)); });
+}
+
+const Schema<program::WorkFrame>& work_frame_table() {
+  using program::WorkFrame;
+  static const Schema<WorkFrame> table(
+      "work_frame", "a work frame of G-code, as the control's table has it",
+      {key("code", &WorkFrame::code,
+           "as the program chooses it: \"G55\", \"G59.1\", \"G54.1 P3\", \"G154 P2\", \"G112\"")
+           .required("The frame's G code")
+           .read_by(read_frame_code),
+       key("origin_mm", &WorkFrame::origin_m, "its zero in machine coordinates")
+           .required("The offsets of the control's table")
+           .entries(3, "[x, y, z]")});
+  return table;
+}
+
+/// Each of them once.
+void require_other_frames(const TomlFile& file, const std::string& path, const std::vector<program::WorkFrame>& all) {
+  const auto key_of = [&](std::size_t i) { return fmt::format("{}[{}].code", path, i); };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t first = 0; first < i; ++first) {
+      if (program::parse_work_frame(all[first].code) != program::parse_work_frame(all[i].code)) continue;
+      throw file.reject(key_of(i), fmt::format("is given before, as \"{}\" in {}", all[first].code,
+                                               file.reject(key_of(first), {}).parts().where));
+    }
+  }
+}
+
+Row<Cell> frames_key() {
+  Row<Cell> row = key("frames", &Cell::program_frames, work_frame_table(),
+                      "offsets of the work frames that programs in G-code use, all of them where a program uses "
+                      "several; workpiece is the frame in which the program begins")
+                      .as("frames");
+  row.read = [read = row.read](TomlFile& file, const std::string& path, const Row<Cell>& self, Cell& out) {
+    read(file, path, self, out);
+    require_other_frames(file, path, out.program_frames);
+  };
+  return row;
+}
+
 }  // namespace
 
 const std::vector<Row<robot::HybridMachine>>& hybrid_rows() {
@@ -253,7 +299,8 @@ const Schema<Cell>& program_words_table() {
            "the tool whose part of a program is read: the number that T, LOADTL or LOAD/TOOL gives it (tool.number is "
            "the "
            "robot controller's and chooses none); without it a program may cut with one tool alone")
-           .at_least(0.0)});
+           .at_least(0.0),
+       frames_key()});
   return table;
 }
 

@@ -147,6 +147,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
     out.geometry = robot::read_geometry(file, out.robot, out.mount(), link_frames, out.notes);
   }
   std::ranges::move(file.done(), std::back_inserter(out.notes));
+  file.locate([&] { program_reading(out).validate(); });
   add_assumed(out.assumed, io::sample_values(file));
   for (const std::string& text : robot::unusual_masses(out.robot.arm))
     out.notes.push_back(fmt::format("{}{}: {}", io::warning_label, out.path.string(), text));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "robomill/base/random.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
@@ -231,6 +232,41 @@ TEST(CellToml, SaysHowProgramsAreRead) {
   const program::ProgramReading shortest = program_reading(read_cell(folder.file("cell.toml", chosen)));
   EXPECT_FALSE(shortest.machine.has_value());
   EXPECT_EQ(shortest.rotary, program::Rotary::great_circle);
+}
+
+TEST(CellToml, GivesTheOffsetsOfWorkFrames) {
+  const Folder folder;
+  const std::string frames = "[[program.frames]]\ncode = \"G54\"\norigin_mm = [100, 200, 300]\n";
+  const auto read = [&](const std::string& more) {
+    return read_cell(folder.file("cell.toml", with("[smoothing]", frames + more + "[smoothing]")));
+  };
+  const CellFile cell = read(
+      "[[program.frames]]\ncode = \"G54.1 P3\"\norigin_mm = [-150, 190, 305]\n[[program.frames]]\ncode = \"G58\"\n"
+      "origin_mm = [1000, 0, 0]\n");
+  const std::vector<program::WorkFrame> given = program_reading(cell).frames;
+  ASSERT_EQ(given.size(), 3U);
+  EXPECT_EQ(given[1].code, "G54.1 P3");
+  EXPECT_LT((given[1].origin_m - Eigen::Vector3d(-0.15, 0.19, 0.305)).norm(), 1e-15);
+  const program::Program program =
+      program::read_program_text("G54 G0 X0 Y0 Z0\nG1 X1 F60\nG54.1 P3 X0 Y0 Z0\n", "part.nc", program_reading(cell));
+  EXPECT_LT((program.blocks.back().end.tip_m - Eigen::Vector3d(-0.25, -0.01, 0.005)).norm(), 1e-12);
+  const auto expect = [&](const std::string& row, const std::string& message) {
+    const std::string said = rejection([&] { (void)read("[[program.frames]]\n" + row); });
+    EXPECT_NE(said.find(message), std::string::npos) << said;
+  };
+  const std::string file = (folder.path() / "cell.toml").string();
+  expect("code = \"G54\"\norigin_mm = [1, 2, 3]\n",
+         file + ":34: program.frames[2].code = \"G54\"; is given before, as \"G54\" in " + file + ":31");
+  expect("code = \"G54.1 P1\"\norigin_mm = [1, 2, 3]\n[[program.frames]]\ncode = \"G110\"\norigin_mm = [1, 2, 3]\n",
+         file + ":37: program.frames[3].code = \"G110\"; is given before, as \"G54.1 P1\" in " + file + ":34");
+  expect("code = \"G53\"\norigin_mm = [1, 2, 3]\n",
+         file + ":34: program.frames[2].code = \"G53\"; must be a work frame of G-code: G54 to G59, G59.1 to G59.3");
+  expect("code = \"G55\"\n", ":33: program.frames[2].origin_mm: is missing. The offsets of the control's table");
+  expect("origin_mm = [1, 2, 3]\n", ":33: program.frames[2].code: is missing. The frame's G code");
+  expect("code = \"G55\"\norigin_mm = [1, 2]\n", ":35: program.frames[2].origin_mm: must hold 3 entries; it holds 2");
+  expect("code = \"G55\"\norigin_mm = [1, 2e6, 3]\n",
+         ":35: program.frames[2].origin_mm[2] = 2e+06 mm; must lie within 1 km");
+  expect("code = 55\norigin_mm = [1, 2, 3]\n", ":34: program.frames[2].code = 55; must be text in quotes");
 }
 
 TEST(CellToml, SaysWhatIsWrongAndWhere) {

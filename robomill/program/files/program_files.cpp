@@ -56,6 +56,17 @@ void require_known_dialect(const std::filesystem::path& path, std::string_view h
                                          .hint = std::string(other->hint)});
 }
 
+/// Work frames are of G-code alone.
+void require_frames_of_gcode(const std::string& file, const ProgramReading& reading, ProgramFormat format) {
+  if (reading.frames.empty() || format == ProgramFormat::gcode) return;
+  throw InvalidInput(
+      InvalidInput::Parts{.where = file,
+                          .field = "program.frames",
+                          .rule = fmt::format("are work frames of G-code, and this program is {}",
+                                              format == ProgramFormat::apt ? "APT/CL" : "a CSV of poses"),
+                          .hint = "Take them out of the cell"});
+}
+
 /// A file and what reads it.
 class Walk {
  public:
@@ -75,6 +86,7 @@ class Walk {
         remarks_(kept),
         calls_(file_, lines) {
     if (format_ == ProgramFormat::gcode) require_known_dialect(path, lines_.head());
+    require_frames_of_gcode(file_, reading_, format_);
     by_t_ =
         format_ == ProgramFormat::gcode && reading_.tool && again_ && GcodeReader::changes_tool_by_t(lines(), file_);
     begin();
@@ -264,6 +276,23 @@ void ProgramReading::validate() const {
   constexpr double least_rad = 1e-9;
   if (!(axis_tolerance_rad >= least_rad && axis_tolerance_rad < 1.0)) {
     throw InvalidInput("axis_tolerance_rad", axis_tolerance_rad, "rad", "must be >= 1e-9 and < 1");
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::string member = fmt::format("frames[{}].", i + 1);
+    try {
+      frames[i].validate();
+    } catch (const InvalidInput& error) {
+      throw within(member, error);
+    }
+    const int number = parse_work_frame(frames[i].code);
+    const auto before = frames.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto same = std::find_if(frames.begin(), before,
+                                   [&](const WorkFrame& frame) { return parse_work_frame(frame.code) == number; });
+    if (same == before) continue;
+    throw InvalidInput(InvalidInput::Parts{
+        .field = member + "code",
+        .value = fmt::format("\"{}\"", frames[i].code),
+        .rule = fmt::format("is the work frame that frames[{}] gives, \"{}\"", same - frames.begin() + 1, same->code)});
   }
 }
 

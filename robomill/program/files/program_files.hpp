@@ -1,6 +1,8 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +41,19 @@ enum class Rotary {
 /// "machine" or "great-circle". @throws InvalidInput naming the field program.rotary
 [[nodiscard]] ROBOMILL_API Rotary parse_rotary(std::string_view name);
 
+/// The offsets of a work frame of G-code, as the control's table has them. Its axes are those of the machine.
+struct ROBOMILL_API WorkFrame {
+  std::string code = {};  ///< "G55", "G59.1", "G54.1 P3", "G154 P2", "G112"; required
+  /// Its zero in machine coordinates; required, |x|, |y|, |z| <= 1000.
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// The number of the work frame that a code names: the same for two codes of one frame, as G110 and G154 P1.
+/// @throws InvalidInput naming the field program.frames.code
+[[nodiscard]] ROBOMILL_API int parse_work_frame(std::string_view code);
+
 /// How to read a program.
 struct ROBOMILL_API ProgramReading {
   std::optional<Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
@@ -51,6 +66,11 @@ struct ROBOMILL_API ProgramReading {
   /// Only what this tool (T4, LOADTL/4) moves is read, modes follow through the parts of the others; none: a program
   /// that cuts with several tools is rejected.
   std::optional<int> tool = {};
+  /// Work frames of G-code, each once, as if the control's table had these offsets when the program begins: W is the
+  /// frame in which the program begins, and positions in another one are moved by the difference of both offsets. A
+  /// program that uses several frames needs all of them, from here or from its own G10 L2, which sets the table when it
+  /// comes (listed as assumed where the offsets differ). Frames that it does not use do not count.
+  std::vector<WorkFrame> frames = {};
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -76,11 +96,20 @@ struct ROBOMILL_API ProgramReading {
 /// The first line after which X, Y and Z are all known makes the start. Spindle and coolant stand with each block, M0
 /// and M1 as dwells with `operator_stop`; harmless M codes, tools, offsets' numbers and G codes that move nothing stand
 /// in `skipped`. Drilling cycles and calls of subprograms become the moves that they make. G52 and G92 move the frame,
+<<<<<<< HEAD
 /// other work frames are read where G10 L2 gives them. After G28, G30 and G53 the position is not known until a rapid
 /// gives it. Rejected are feeds that are missing or not above 0, two G codes of one group, words of axes that the
 /// machine does not have, arcs whose radius does not fit, codes that would move the tool or its frame in ways that are
 /// not read (splines, compensation, macros), M codes not known to be harmless, and moves at feed after
 /// another tool, another length, another work frame or the end of the tool centre point.
+=======
+/// other work frames are read where ProgramReading::frames or G10 L2 gives them. After G28, G30 and G53 the position is
+/// not known until a rapid gives it. Rejected are feeds that are missing or not above 0, two G codes of one group,
+/// words of axes that the machine does not have, arcs whose radius does not fit, codes that would move the tool or its
+/// frame in ways that are not read (splines, compensation, macros, tilted planes), M codes not known to be harmless,
+/// and moves at feed after another tool, another length, a work frame that is not given or the end of the tool centre
+/// point.
+>>>>>>> 753a61e0a67732c09c4c078e2db54ee1cc87e1bd
 ///
 /// Several tools: of the tool that the reading chooses, the first complete position after its change makes the start.
 /// Parts of other tools stand in `skipped` with their first lines. A chosen tool that the program does not have, or
@@ -97,7 +126,8 @@ struct ROBOMILL_API ProgramReading {
 /// A feed counts the tip's way, and degrees where the axis alone turns.
 class ROBOMILL_API ProgramFile final : public Source {
  public:
-  /// @throws InvalidInput if the options are invalid, the file cannot be read, or as next() up to the start
+  /// @throws InvalidInput if the options are invalid, work frames are given and the format is not G-code, the file
+  ///     cannot be read, or as next() up to the start
   explicit ProgramFile(const std::filesystem::path& path, const ProgramReading& reading = {});
   ~ProgramFile() override;
   ProgramFile(const ProgramFile&) = delete;

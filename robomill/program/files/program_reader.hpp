@@ -114,11 +114,12 @@ class ProgramReader {
   /// @param continued  the line before it goes on in this one
   [[nodiscard]] virtual Part part_of(std::string_view line, char ahead, bool continued) const = 0;
 
+  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
+
  protected:
   /// A reader that stands where the other one does.
   ProgramReader(const ProgramReader&) = default;
 
-  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
   /// Carries out a statement; calls begin_at, move or dwell at most once.
   virtual void read(std::string_view statement) = 0;
   /// The program has ended.

@@ -239,24 +239,12 @@ FileKind kind_of_hdf5(const Beginning& file) {
   return {.kind = "result", .document = "trajectory"};
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kinds_by_ending = {{{".ngc", "program"},
-                                                                                            {".nc", "program"},
-                                                                                            {".gcode", "program"},
-                                                                                            {".tap", "program"},
-                                                                                            {".apt", "program"},
-                                                                                            {".cls", "program"},
-                                                                                            {".cl", "program"},
-                                                                                            {".ncl", "program"},
-                                                                                            {".aptsource", "program"},
-                                                                                            {".uff", "frf"},
-                                                                                            {".unv", "frf"},
-                                                                                            {".uf", "frf"},
-                                                                                            {".html", "report"},
-                                                                                            {".jsonl", "record"},
-                                                                                            {".src", "result"},
-                                                                                            {".mod", "result"},
-                                                                                            {".script", "result"},
-                                                                                            {".servoj", "result"}}};
+using Known = std::pair<std::string_view, std::string_view>;
+constexpr Known kinds_by_ending[] = {
+    {".ngc", "program"}, {".nc", "program"},    {".gcode", "program"}, {".tap", "program"},       {".apt", "program"},
+    {".cls", "program"}, {".cl", "program"},    {".ncl", "program"},   {".aptsource", "program"}, {".uff", "frf"},
+    {".unv", "frf"},     {".uf", "frf"},        {".html", "report"},   {".jsonl", "record"},      {".src", "result"},
+    {".mod", "result"},  {".script", "result"}, {".servoj", "result"}};
 
 }  // namespace
 

@@ -44,6 +44,13 @@ void GcodeReader::choose_cycle(int code, const GcodeWords::Word& word, Line& lin
 void GcodeReader::update_cycle(const Line& line) {
   const std::optional<Vector3d> origin = origin_m();
   const double zero_m = origin ? origin->z() : 0.0;
+  if (origin) {
+    // Heights that were said before count in the frame that holds now.
+    const double moved_m = incremental_ ? 0.0 : zero_m - cycle_.zero_m;
+    if (cycle_.r) *cycle_.r += moved_m;
+    if (cycle_.z) *cycle_.z += moved_m;
+    cycle_.zero_m = zero_m;
+  }
   if (line.radius) {
     cycle_.r = *line.radius * unit_m() + (incremental_ ? cycle_.initial_m : zero_m);
     check_coordinate("R", *cycle_.r, *line.radius, unit_name());

@@ -103,8 +103,8 @@ TEST(GcodeDialects, FramesMoveThePositions) {
   expect_end(read("G54.1 P3\nG0 X0 Y0 Z0\nG1 X1 F60\n"), {1, 0, 0});
   expect_said(
       "G54\nG0 X0 Y0 Z0\nG1 X1 F60\nG55\nG0 X3\nG1 X1\n",
-      "part.nc:4: G55: is another work frame than G54 of the positions before (line 1); where the one lies in the "
-      "other is not known here, and line 6 cuts. Write a program for each frame, or give both by G10 L2");
+      "part.nc:4: G55: is another work frame than G54 (line 1) of the positions before; the offsets of G54 and G55 are "
+      "not known, and line 6 cuts. Give them as the control's table has them, in the cell: [[program.frames]]");
   expect_said("G92 X0 Y0 Z10\nG1 X1 F60\nG92.1\nX2\n",
               "part.nc:3: G92.1: moves the program's frame by a position that");
 }

@@ -14,14 +14,17 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::array<const char*, 3> axis_names = {"X", "Y", "Z"};
-constexpr int extended = 100'000;
-
 Eigen::Index axis_of(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
 std::string code_text(const GcodeWords::Word& word) {
   return fmt::format("G{:g}", word.number);
+}
+
+/// A frame's code; G54 where no line says one.
+std::string frame_code(const std::string& said) {
+  return said.empty() ? "G54" : said;
 }
 
 }  // namespace
@@ -44,30 +47,34 @@ void GcodeReader::choose_system(const Line& line) {
   const GcodeWords::Word& word = *line.system;
   const int code = static_cast<int>(std::round(10.0 * word.number));
   std::string said = code_text(word);
-  int id = code;
-  if (code >= 1100 && code <= 1290) {
-    if (code % 10 != 0) reject("G", word.number, "", "is no G code");
-    id = extended + code / 10 - 109;  // Haas: G110 is G154 P1
-  } else if (code == 541 || code == 1540 || (code == 540 && is_frame_number(line))) {
-    constexpr double most = 300.0;
-    const double number = line.p ? line.p->number : 0.0;
-    if (!(number >= 1.0 && number <= most && number == std::round(number))) {
-      reject("P", number, "", fmt::format("must be a whole number from 1 to 300: it names the work frame of {}", said));
-    }
-    id = extended + static_cast<int>(number);
-    said += fmt::format(" P{:g}", number);
-  } else if (code <= 590 && code % 10 != 0) {
-    reject("G", word.number, "", "is no G code");
+  const bool numbered = code == 541 || code == 1540 || (code == first_work_frame && is_frame_number(line));
+  const double number = line.p ? line.p->number : 0.0;
+  const std::optional<int> frame = work_frame_number(code, numbered ? std::optional(number) : std::nullopt);
+  if (!frame && numbered) {
+    reject("P", number, "", fmt::format("must be a whole number from 1 to 300: it names the work frame of {}", said));
   }
-  system_ = {.value = id, .line = line_, .code = std::move(said)};
+  if (!frame) reject("G", word.number, "", "is no G code");
+  if (numbered) said += fmt::format(" P{:g}", number);
+  system_ = {.value = *frame, .line = line_, .code = std::move(said)};
 }
 
-void GcodeReader::note_other_base() const {
+std::optional<Vector3d> GcodeReader::offsets_m() const {
+  const auto table = tables_m_.find(system_.value);
+  return table == tables_m_.end() ? std::nullopt : std::optional(table->second);
+}
+
+void GcodeReader::choose_base() {
+  base_ = system_;
+  base_table_m_ = offsets_m();
   if (!passed_system_ || passed_system_->value == system_.value) return;
-  const auto name = [](const Said<int>& system) { return system.code.empty() ? std::string("G54") : system.code; };
+  if (base_table_m_ && passed_table_m_) {
+    base_ = passed_system_;
+    base_table_m_ = passed_table_m_;
+    return;
+  }
   remarks_.assume({.what = "The program's frame",
-                   .taken = fmt::format("{}, in which {} begins; the tools before it begin in {}", name(system_),
-                                        tools_.now().name, name(*passed_system_)),
+                   .taken = fmt::format("{}, in which {} begins; the tools before it begin in {}",
+                                        frame_code(system_.code), tools_.now().name, frame_code(passed_system_->code)),
                    .key = "workpiece.origin_mm of that frame"});
 }
 
@@ -75,9 +82,10 @@ std::optional<Vector3d> GcodeReader::origin_m() const {
   if (shift_lost_.value) return std::nullopt;
   const Vector3d offset_m = local_m_ + shift_m_;
   if (!base_) return offset_m;
-  const auto table = tables_m_.find(system_.value);
-  if (base_table_m_ && table != tables_m_.end()) return Vector3d(offset_m + table->second - *base_table_m_);
-  if (system_.value != base_->value || base_table_m_ || table != tables_m_.end()) return std::nullopt;
+  const std::optional<Vector3d> table = offsets_m();
+  // In W itself the difference is 0 to the last bit, whatever its offsets are.
+  if (base_table_m_ && table) return Vector3d(offset_m + (*table - *base_table_m_));
+  if (system_.value != base_->value || base_moved_line_ > 0) return std::nullopt;
   return offset_m;
 }
 
@@ -97,6 +105,7 @@ void GcodeReader::shift(const Line& line) {
     reject("S", std::nullopt, "", "stands on a line with G92: on a lathe it would limit the spindle's speed",
            "Write a line of its own for S");
   }
+  if (!base_) choose_base();
   const std::optional<Vector3d> origin = origin_m();
   Pose& at = pending_ ? *pending_ : pose_;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -116,7 +125,6 @@ void GcodeReader::shift(const Line& line) {
       shift_lost_ = {.value = true, .line = line_, .code = "G92"};
     }
   }
-  if (!base_) base_ = system_;
   if (!start_ && unknown_axis() == nullptr) begin_at(pose_);
 }
 
@@ -140,18 +148,14 @@ void GcodeReader::set_table(const Line& line) {
            tool          ? "changes a tool's length after moves at feed"
            : kind == 20. ? "sets an extended work frame (Fanuc, Haas) or moves one to where the tool is (LinuxCNC)"
                          : "is not read with G10: it may move the program's frame",
-           "Work frames are given by G10 L2 P1 X Y Z");
+           "Work frames are given by G10 L2 P1 X Y Z, or by program.frames in the cell");
   }
-  if (!(number >= 1.0 && number <= 9.0 && number == std::round(number))) {
-    reject("P", number, "", "must be a whole number from 1 to 9: G10 L2 P1 gives G54, P6 G59, P9 G59.3");
-  }
+  const std::optional<int> frame = work_frame_of_table(number);
+  if (!frame) reject("P", number, "", "must be a whole number from 1 to 9: G10 L2 P1 gives G54, P6 G59, P9 G59.3");
   const bool turned = line.rotary[0].value_or(0.0) != 0.0 || line.rotary[1].value_or(0.0) != 0.0 ||
                       line.rotary[2].value_or(0.0) != 0.0 || line.radius.value_or(0.0) != 0.0;
   if (turned) reject("G", 10.0, "", "turns a work frame, which is not read");
-  const int frame = static_cast<int>(number);
-  constexpr int of_g59 = 6;
-  const int id = frame <= of_g59 ? first_system + 10 * (frame - 1) : 590 + frame - of_g59;
-  const auto found = tables_m_.find(id);
+  const auto found = tables_m_.find(*frame);
   Vector3d table_m = found == tables_m_.end() ? Vector3d::Zero().eval() : found->second;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.position[i] && found == tables_m_.end()) {
@@ -162,7 +166,15 @@ void GcodeReader::set_table(const Line& line) {
     table_m[axis_of(i)] = *line.position[i] * unit_m();
     check_coordinate(axis_names[i], table_m[axis_of(i)], *line.position[i], unit_name());
   }
-  tables_m_[id] = table_m;
+  constexpr double same_m = 1e-9;  // as inches round
+  if (given_tables_.contains(*frame) && (table_m - found->second).norm() > same_m) {
+    given_tables_.erase(*frame);
+    remarks_.assume({.what = fmt::format("Offsets of G{:g}", 0.1 * *frame),
+                     .taken = fmt::format("those of the program's G10 L2 from line {} on; the cell has others", line_),
+                     .key = "program.frames"});
+  }
+  tables_m_[*frame] = table_m;
+  if (base_ && base_->value == *frame && !base_table_m_) base_moved_line_ = line_;
 }
 
 void GcodeReader::lose(std::size_t axis, const std::string& code) {
@@ -216,26 +228,44 @@ void GcodeReader::go_to_machine(const Line& line) {
   skip(said);
 }
 
+GcodeReader::Change GcodeReader::frame_change() const {
+  if (shift_lost_.value) {
+    return {.line = shift_lost_.line,
+            .code = shift_lost_.code,
+            .what = "moves the program's frame by a position that is not known here",
+            .hint = "Let the CAM system write positions in one work frame"};
+  }
+  const Said<int>& base = base_.value();
+  std::vector<std::string> missing;
+  bool extended = false;
+  const auto add = [&](const Said<int>& frame) {
+    missing.push_back(frame_code(frame.code));
+    extended = extended || is_extended_frame(frame.value);
+  };
+  if (!base_table_m_) add(base);
+  if (system_.value != base.value && !offsets_m()) add(system_);
+  const std::string line = base.line > 0 ? fmt::format(" (line {})", base.line) : "";
+  Change out = {.line = system_.line, .code = system_.code};
+  if (system_.value == base.value) {
+    out.line = base_moved_line_;
+    out.code = "G10";
+    out.what = fmt::format("moves {}{} after positions in it; its offsets before are not known", missing[0], line);
+  } else {
+    out.what = fmt::format("is another work frame than {}{} of the positions before; the offsets of {} are not known",
+                           frame_code(base.code), line, fmt::join(missing, " and "));
+  }
+  out.hint = fmt::format(
+      "Give them as the control's table has them, in the cell: [[program.frames]] code = \"{}\", "
+      "origin_mm = [x, y, z]{}{}",
+      missing[0], missing.size() > 1 ? fmt::format(", and the same for \"{}\"", missing[1]) : "",
+      extended ? "" : "; or by G10 L2 P X Y Z before the first position");
+  return out;
+}
+
 bool GcodeReader::is_elsewhere(const Line& line) {
   std::optional<Change> change = setup_change(line);
   const bool of_length = change && !center_point_lost(line);
-  if (!change && !origin_m()) {
-    const Said<int> base = base_.value_or(system_);
-    change =
-        Change{.line = system_.line,
-               .code = system_.code,
-               .what = fmt::format("is another work frame than {} of the positions before{}; where the one lies in "
-                                   "the other is not known here",
-                                   base.code.empty() ? "that" : base.code,
-                                   base.line > 0 ? fmt::format(" (line {})", base.line) : ""),
-               .hint = "Write a program for each frame, or give both by G10 L2 P X Y Z before the first position"};
-    if (shift_lost_.value) {
-      change->line = shift_lost_.line;
-      change->code = shift_lost_.code;
-      change->what = "moves the program's frame by a position that is not known here";
-      change->hint = "Let the CAM system write positions in one work frame";
-    }
-  }
+  if (!change && !origin_m()) change = frame_change();
   if (!change) return false;
   if (motion_ != Motion::rapid) {
     if (change->other_tool) {

@@ -26,6 +26,15 @@ bool any(const std::array<std::optional<double>, 3>& words) {
 
 }  // namespace
 
+GcodeReader::GcodeReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks)
+    : ProgramReader(std::move(file), reading, remarks) {
+  for (const WorkFrame& frame : reading.frames) {
+    const int number = parse_work_frame(frame.code);
+    tables_m_[number] = frame.origin_m;
+    given_tables_.insert(number);
+  }
+}
+
 bool GcodeReader::Line::has(char letter) const {
   return (letters & (1U << letter_index(letter))) != 0;
 }
@@ -322,11 +331,7 @@ void GcodeReader::wait(const Line& line) {
 Eigen::Vector3d GcodeReader::position_after(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
   const Eigen::Vector3d from_m = corner_ ? corner_->at_m : pending_ ? pending_->tip_m : pose_.tip_m;
-  if (!base_ && any(line.position)) {
-    base_ = system_;
-    if (const auto table = tables_m_.find(system_.value); table != tables_m_.end()) base_table_m_ = table->second;
-    note_other_base();
-  }
+  if (!base_ && any(line.position)) choose_base();
   // In a turned plane they count from its own zero.
   const Eigen::Vector3d origin = tilted_ ? Eigen::Vector3d::Zero() : origin_m().value_or(Eigen::Vector3d::Zero());
   Eigen::Vector3d position = in_program(from_m);

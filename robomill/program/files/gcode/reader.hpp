@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "robomill/program/files/gcode/calls.hpp"
 #include "robomill/program/files/gcode/codes.hpp"
 #include "robomill/program/files/gcode/words.hpp"
+#include "robomill/program/files/gcode/work_frames.hpp"
 #include "robomill/program/files/program_arc.hpp"
 #include "robomill/program/files/program_reader.hpp"
 
@@ -20,7 +22,8 @@ namespace robomill::program {
 /// Reads G-code; gcode.hpp says what of it.
 class GcodeReader final : public ProgramReader {
  public:
-  using ProgramReader::ProgramReader;
+  /// @throws InvalidInput where a work frame of the reading has no code of one
+  GcodeReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks);
   GcodeReader(const GcodeReader&) = default;
 
   enum class Motion : std::uint8_t { none, rapid, feed, clockwise, counterclockwise, cycle };
@@ -140,6 +143,13 @@ class GcodeReader final : public ProgramReader {
     Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< from that of the work frame, along its axes
   };
 
+  /// What the positions rest on that is no more what it was at the first move at feed.
+  struct Change {
+    std::size_t line = 0;
+    std::string code = {}, what = {}, hint = {};
+    bool other_tool = false;
+  };
+
   void read(std::string_view statement) override;
   void at_end() override;
   bool advance() override;
@@ -189,8 +199,11 @@ class GcodeReader final : public ProgramReader {
   // frames.cpp
   void choose_system(const Line& line);
   [[nodiscard]] bool is_frame_number(const Line& line) const;
-  /// W is the frame of the chosen tool's first position, which may be another one than the program begins in.
-  void note_other_base() const;
+  /// The offsets of the frame in use; empty where nothing gives them.
+  [[nodiscard]] std::optional<Eigen::Vector3d> offsets_m() const;
+  /// W from here on: the frame in use. Where other tools begin in another one, and the offsets of both are known, that
+  /// one.
+  void choose_base();
   /// Where X0 Y0 Z0 lies in W; empty where that is not known.
   [[nodiscard]] std::optional<Eigen::Vector3d> origin_m() const;
   void set_local(const Line& line);
@@ -203,6 +216,8 @@ class GcodeReader final : public ProgramReader {
   void lose(std::size_t axis, const std::string& code);
   /// Where positions of the line do not mean what those of the cuts so far mean: rejected at feed, else left out.
   [[nodiscard]] bool is_elsewhere(const Line& line);
+  /// Why origin_m is not known.
+  [[nodiscard]] Change frame_change() const;
   /// A rapid after positions that were not known: up, across, down.
   void come_back(const Pose& end);
   [[nodiscard]] const char* unknown_axis() const;
@@ -255,12 +270,6 @@ class GcodeReader final : public ProgramReader {
   void take_m(const GcodeWords::Word& word, Line& line);
   void set_up(const Line& line);
   void set_length(const GcodeWords::Word& word, const Line& line);
-  /// What the positions rest on that is no more what it was at the first move at feed.
-  struct Change {
-    std::size_t line = 0;
-    std::string code = {}, what = {}, hint = {};
-    bool other_tool = false;
-  };
   [[nodiscard]] std::optional<Change> setup_change(const Line& line) const;
   [[nodiscard]] bool center_point_lost(const Line& line) const;
   [[noreturn]] void reject_change(const Change& change) const;
@@ -305,12 +314,12 @@ class GcodeReader final : public ProgramReader {
   Eigen::Vector3d rotary_deg_ = Eigen::Vector3d::Zero();
   bool by_rotary_ = false, by_vector_ = false;  ///< how this program gives its axis
 
-  /// Work frames. A system is its G code in tenths, extended ones count from 100,000.
-  static constexpr int first_system = 540;
-  Said<int> system_ = {.value = first_system};
-  std::optional<Said<int>> base_;  ///< the one that W is: of the first position
-  std::map<int, Eigen::Vector3d> tables_m_;
-  std::optional<Eigen::Vector3d> base_table_m_;
+  Said<int> system_ = {.value = first_work_frame};  ///< the work frame in use, by its number
+  std::optional<Said<int>> base_;                   ///< the one that W is: of the first position
+  std::map<int, Eigen::Vector3d> tables_m_;         ///< offsets of the frames that are given
+  std::set<int> given_tables_;                      ///< those of the reading that G10 L2 has not changed
+  std::optional<Eigen::Vector3d> base_table_m_;     ///< of W, at the first position
+  std::size_t base_moved_line_ = 0;                 ///< G10 L2 that gives W other offsets, while base_table_m_ is none
   Eigen::Vector3d local_m_ = Eigen::Vector3d::Zero(), shift_m_ = Eigen::Vector3d::Zero();
   bool shift_declared_ = false;  ///< G92 said where the tool stands, and no line before it
   Said<bool> shift_lost_;
@@ -319,7 +328,8 @@ class GcodeReader final : public ProgramReader {
     int code = 0;  ///< in tenths; 0: none
     std::optional<double> r, z, q;
     double dwell_s = 0.0, initial_m = 0.0;
-    bool to_r = false;  ///< G99
+    double zero_m = 0.0;  ///< height of the frame that r and z were said in
+    bool to_r = false;    ///< G99
   };
   Cycle cycle_;
   std::optional<Corner> corner_;
@@ -343,8 +353,9 @@ class GcodeReader final : public ProgramReader {
   Said<std::optional<double>> named_, named_cutting_;  ///< by T, while no M6 has come; the one that cut first
   std::optional<Change> second_named_;                 ///< that cuts
   std::size_t second_named_line_ = 0;
-  std::optional<Said<int>> passed_system_;  ///< of the first position that is not read
-  std::optional<Change> second_tool_;       ///< that cuts: from here on tools alone are looked at
+  std::optional<Said<int>> passed_system_;         ///< of the first position that is not read …
+  std::optional<Eigen::Vector3d> passed_table_m_;  ///< … and its offsets
+  std::optional<Change> second_tool_;              ///< that cuts: from here on tools alone are looked at
   std::size_t second_tool_line_ = 0;
   std::optional<double> cutting_tool_, cutting_length_;
 

@@ -140,7 +140,10 @@ void GcodeReader::pass_over(const Line& line) {
       break;
   }
   if (line.dwells || !(line.moves() || line.cycle)) return;
-  if (any_tool_word(line.position) && !passed_system_) passed_system_ = system_;
+  if (any_tool_word(line.position) && !passed_system_) {
+    passed_system_ = system_;
+    passed_table_m_ = offsets_m();
+  }
   tools_.move(line_);
   const bool straight = motion_ == Motion::rapid || motion_ == Motion::feed;
   if (straight) {
