@@ -96,20 +96,12 @@ struct ROBOMILL_API ProgramReading {
 /// The first line after which X, Y and Z are all known makes the start. Spindle and coolant stand with each block, M0
 /// and M1 as dwells with `operator_stop`; harmless M codes, tools, offsets' numbers and G codes that move nothing stand
 /// in `skipped`. Drilling cycles and calls of subprograms become the moves that they make. G52 and G92 move the frame,
-<<<<<<< HEAD
-/// other work frames are read where G10 L2 gives them. After G28, G30 and G53 the position is not known until a rapid
-/// gives it. Rejected are feeds that are missing or not above 0, two G codes of one group, words of axes that the
-/// machine does not have, arcs whose radius does not fit, codes that would move the tool or its frame in ways that are
-/// not read (splines, compensation, macros), M codes not known to be harmless, and moves at feed after
-/// another tool, another length, another work frame or the end of the tool centre point.
-=======
 /// other work frames are read where ProgramReading::frames or G10 L2 gives them. After G28, G30 and G53 the position is
 /// not known until a rapid gives it. Rejected are feeds that are missing or not above 0, two G codes of one group,
 /// words of axes that the machine does not have, arcs whose radius does not fit, codes that would move the tool or its
-/// frame in ways that are not read (splines, compensation, macros, tilted planes), M codes not known to be harmless,
+/// frame in ways that are not read (splines, compensation, macros), M codes not known to be harmless,
 /// and moves at feed after another tool, another length, a work frame that is not given or the end of the tool centre
 /// point.
->>>>>>> 753a61e0a67732c09c4c078e2db54ee1cc87e1bd
 ///
 /// Several tools: of the tool that the reading chooses, the first complete position after its change makes the start.
 /// Parts of other tools stand in `skipped` with their first lines. A chosen tool that the program does not have, or
