@@ -158,6 +158,11 @@ CellCheck run_cell_check(const CellCheckJob& job, Cell read, Progress& progress)
   }
   out.drawing = draw_cell(out, targets.head);
   note_what_is_open(targets, out, progress);
+  if (!out.whole) {
+    out.notes.push_back(
+        fmt::format("{} goes on after its first {} moves, which alone are judged. robomill smooth follows all of it.",
+                    out.program, most_blocks));
+  }
   if (program && out.placement.works()) {
     for (std::string& note : posture_notes(out.placement.choice)) out.notes.push_back(std::move(note));
   }

@@ -269,6 +269,17 @@ TEST(CellCheck, FollowsAProgram) {
   EXPECT_LT((start.tool.tip_m - Eigen::Vector3d(0.0, 0.0, 0.05)).norm(), 1e-9);
 }
 
+TEST(CellCheck, SaysThatTheBeginAloneOfALongProgramIsJudged) {
+  const Folder folder;
+  std::string text = "G21 G90 G94\nG0 X0 Y0 Z50\nG1 Z0 F1200\n";
+  for (int i = 0; i < 100'010; ++i) text += "X1\nX0\n";
+  const CellCheck check = checked(folder, kr210(), text + "X999999\nM30\n");
+  EXPECT_FALSE(check.whole);
+  EXPECT_NE(summary(check).find("the begin of part.ngc is reached"), std::string::npos);
+  ASSERT_FALSE(check.notes.empty());
+  EXPECT_EQ(check.notes.back().substr(0, 49), "part.ngc goes on after its first 200000 moves, wh");
+}
+
 // Two of the blocks go too far; the places proposed serve for all of the program.
 TEST(CellCheck, NamesTheBlocksThatCannotBeReached) {
   const Folder folder;

@@ -166,7 +166,8 @@ std::string margin_text(const CellCheck& check, const path::Margin& margin) {
 
 void add_placement(std::string& out, const CellCheck& check) {
   const Placement& placement = check.placement;
-  const std::string what = check.program.empty() ? "the workpiece's origin" : printable(check.program);
+  std::string what = check.program.empty() ? "the workpiece's origin" : printable(check.program);
+  if (!check.whole) what = "the begin of " + what;
   if (placement.works()) {
     append(out, "\nplacement  {} is reached{}; least {}\n", what, gamma_text(check, placement.choice),
            margin_text(check, placement.choice.margin));
