@@ -210,7 +210,7 @@ TEST(Tools, OfNx) {
   expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {}, "the program has T4 (line 2, 4 lines, 1 move",
                   "part.cls");
   const std::string two = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
-  expect_rejected(two, {}, "T4 (line 2, 5 lines, 1 move, 1 s at feed) and T5 (line 7,", "part.cls");
+  expect_rejected(two, {}, "T4 (line 2, 4 lines, 1 move, 1 s at feed) and T5 (line 7,", "part.cls");
   EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm, 7.0, 1e-9);
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nGOHOME\nLOADTL/2\nGOTO/5,5,5\nGOTO/6,5,5\n", {},
                   "part.cls:6: LOADTL: mounts another tool", "part.cls");

@@ -275,9 +275,9 @@ TEST(AptCycles, AHeightToGoBackToEndsWithItsHoles) {
 TEST(AptTools, EachStatementThatNamesOneCounts) {
   const std::string cut = "LOAD/TOOL,5\nSELECT/TOOL,6\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\n";
   EXPECT_EQ(read(cut + "LOAD/TOOL,5\nGOTO/2,0,0\n").blocks.size(), 2U);
-  expect_rejected(cut + "LOAD/TOOL,6\nRAPID/\nGOTO/2,0,0\n", "part.apt:6: LOAD: mounts another tool");
+  expect_rejected(cut + "LOAD/TOOL,6\nRAPID/\nGOTO/2,0,0\n", "part:6: LOAD: mounts another tool");
   expect_rejected("TOOL PATH/A,TOOL,T1\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\nTOOL PATH/B,TOOL,T2\nGOTO/2,0,0\n",
-                  "part.apt:5: TOOL PATH: mounts another tool");
+                  "part:5: TOOL PATH: mounts another tool");
   EXPECT_EQ(read("UNIT/INCH\nGOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0\n").blocks[0].end.tip_m.x(), 0.0254);
   const Program normals = read("GOTO/0,0,0\nFEDRAT/60\nGOTO/1,0,0,0,0,1,.6,.8,0\n");
   EXPECT_EQ(normals.blocks.size(), 1U);

@@ -257,7 +257,7 @@ RandomProgram random_program(Random& random) {
       tip_mm[i] = words[i] + offsets_mm[now][i] - offsets_mm[base][i];
     }
     out.text += line + "\n";
-    out.tips_mm.push_back(tip_mm);
+    if ((tip_mm - out.tips_mm.back()).norm() > 1e-9) out.tips_mm.push_back(tip_mm);  // none of length zero
   }
   out.text += "M30\n";
   return out;
