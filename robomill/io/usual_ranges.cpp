@@ -157,6 +157,7 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"min_frequency_hz", 0.1, 10'000},
     {"max_frequency_hz", 10, 50'000},
     {"frequency_resolution_hz", 0.01, 100},
+    {"hit_spacing_s", 0.05, 60},
     {"force_window_s", 1e-4, 1},
     {"exponential_time_constant_s", 0.001, 30},
     // arm and cell
