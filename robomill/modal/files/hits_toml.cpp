@@ -227,7 +227,8 @@ ColumnUnit unit_of(const io::TomlFile& file, const std::string& key, const io::R
   return {.factor = si.factor};
 }
 
-HitRecord open_record(const io::TomlFile& file, const std::string& key, const HitTable& given, const Sensors& sensors) {
+RecordOfHits open_record(const io::TomlFile& file, const std::string& key, const HitTable& given,
+                         const Sensors& sensors) {
   for (const std::filesystem::path& path : given.files) {
     if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
       throw file.reject(key, "is a WAV, and acquisition.scale is missing",
@@ -243,7 +244,7 @@ HitRecord open_record(const io::TomlFile& file, const std::string& key, const Hi
 }
 
 /// The columns that a row names, in SI.
-Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, const HitRecord& record,
+Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, const RecordOfHits& record,
            const ReadColumns& as, OpenUnits& open, std::vector<std::string>& notes) {
   Hit hit;
   for (const io::Record& part : record.parts) hit.file += (hit.file.empty() ? "" : " + ") + part.file.string();
@@ -251,16 +252,16 @@ Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& colum
   hit.against_axis = columns.against_axis;
   hit.sample_rate_hz = record.sample_rate_hz;
   std::vector<std::string> converted;
-  const auto factor = [&](const char* key, const HitRecord::Column& column, const ReadAs& read_as, bool& is_open) {
+  const auto factor = [&](const char* key, const RecordOfHits::Column& column, const ReadAs& read_as, bool& is_open) {
     const ColumnUnit unit = unit_of(file, row + key, *column.part, column.place, read_as, converted);
     is_open = is_open || !unit.stated;
     open.volts = open.volts || (!unit.stated && read_as.in_volts && !file.has(read_as.voltage));
     return read_as.given_factor * unit.factor;
   };
-  const HitRecord::Column force = file.locate([&] { return record.column(columns.force, true); });
+  const RecordOfHits::Column force = file.locate([&] { return record.column(columns.force, true); });
   hit.force_n = force.samples() * factor("force", force, as.force, open.force);
   for (const HitRow::Response& response : columns.responses) {
-    const HitRecord::Column column = file.locate([&] { return record.column(response.column, false); });
+    const RecordOfHits::Column column = file.locate([&] { return record.column(response.column, false); });
     hit.responses.push_back({.dof = response.dof,
                              .samples = column.samples() * factor("responses", column, as.response, open.response),
                              .against_axis = response.against_axis});
@@ -298,7 +299,7 @@ std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, const ReadColum
   file.require(row + "file");
   HitTable given;
   hit_table().read(file, fmt::format("hits[{}]", index), given);
-  const HitRecord record = open_record(file, row + "file", given, sensors);
+  const RecordOfHits record = open_record(file, row + "file", given, sensors);
   std::ranges::copy(record.notes, std::back_inserter(notes));
   if (!(record.sample_rate_hz > 0.0)) {
     throw file.reject(row + "file", "has no time column, and acquisition.sample_rate_hz is missing");

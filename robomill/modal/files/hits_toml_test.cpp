@@ -283,13 +283,9 @@ TEST(HitsToml, TakesTheVoltageThatARecordStates) {
   const std::string said = NamedColumns{.force = "force_v", .response = "ax_mv", .acquisition = in_mv}.rejection();
   EXPECT_NE(said.find("is in V by its name, and acquisition.voltage_unit says another unit"), std::string::npos)
       << said;
-  EXPECT_NEAR(
-      NamedColumns{.force = "force_mv", .response = "ax_v", .acquisition = "response_voltage_unit = \"V\"\n" + in_mv}
-          .read()
-          .hits[0]
-          .responses[0]
-          .samples(1),
-      3.0 * 10.0 * 9.80665, 1e-10);
+  const NamedColumns of_each{
+      .force = "force_mv", .response = "ax_v", .acquisition = "response_voltage_unit = \"V\"\n" + in_mv};
+  EXPECT_NEAR(of_each.read().hits[0].responses[0].samples(1), 3.0 * 10.0 * 9.80665, 1e-10);
 }
 
 TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {

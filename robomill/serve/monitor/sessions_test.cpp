@@ -164,7 +164,8 @@ TEST_F(MonitorSessionsTest, FindsTheChatterOfARecording) {
   for (const json& message : published("monitor")) {
     const json& frame = message["frame"];
     EXPECT_EQ(message["id"], id);
-    EXPECT_NEAR(frame["spindle_speed_rpm"], 3000.0, 3.0);
+    // Before, the speed is not known yet ("speed-unknown").
+    if (frame["time_s"] > 1.0) EXPECT_NEAR(frame["spindle_speed_rpm"], 3000.0, 3.0);
     if (frame["spectrum"].is_null()) continue;
     ASSERT_EQ(frame["spectrum"].get<std::string>().size(), bands);
     if (frame["state"] != "chatter") {
@@ -370,9 +371,11 @@ TEST_F(MonitorSessionsTest, EndsAtOnceWhateverTheSpeed) {
   });
   const auto begin = std::chrono::steady_clock::now();
   const int id = start("mqtt://127.0.0.1/spindle");
-  const json all = wait_for(id, [](const json& now) { return now["decision_count"] > 200; });
+  const json all = wait_for(id, [](const json& now) {
+    // A machine that is slow at first says overloaded until it keeps up.
+    return now["decision_count"] > 200 && now["frame"]["reason"] == "standstill";
+  });
   EXPECT_EQ(all["frame"]["state"], "blind");
-  EXPECT_EQ(all["frame"]["reason"], "standstill");
   const auto asked = std::chrono::steady_clock::now();
   EXPECT_LT(asked - begin, std::chrono::seconds(30));
   ask("DELETE", "/api/monitors/" + std::to_string(id));

@@ -67,13 +67,13 @@ std::optional<std::size_t> own_part(const std::vector<io::Record>& parts, bool i
   return parts.size() == 2 ? std::optional<std::size_t>(1) : std::nullopt;
 }
 
-HitRecord::Column HitRecord::column(const std::string& text, bool is_force) const {
+RecordOfHits::Column RecordOfHits::column(const std::string& text, bool is_force) const {
   const io::PartColumn found = io::find_column(parts, text, own_part(parts, is_force));
   return {.part = &parts[found.part], .place = found.place};
 }
 
-HitRecord read_hit_record(const std::vector<std::filesystem::path>& files, const HitRecordOptions& options) {
-  HitRecord out;
+RecordOfHits read_hit_record(const std::vector<std::filesystem::path>& files, const HitRecordOptions& options) {
+  RecordOfHits out;
   std::vector<io::Record> parts;
   std::vector<std::string> times;
   bool has_time = options.time.empty();

@@ -13,7 +13,7 @@
 namespace robomill::modal {
 
 /// The record of a measurement: one file, or several with force and responses apart.
-struct HitRecord {
+struct RecordOfHits {
   std::vector<io::Record> parts;  ///< one a file, of one length
   double sample_rate_hz = 0.0;    ///< 0: nothing says it
   double begin_s = 0.0;           ///< time of the first sample
@@ -39,8 +39,8 @@ struct HitRecordOptions {
 
 /// Reads the files of one measurement, and puts them side by side.
 /// @throws InvalidInput as io::read_record, io::rate_of and io::join_records
-[[nodiscard]] HitRecord read_hit_record(const std::vector<std::filesystem::path>& files,
-                                        const HitRecordOptions& options = {});
+[[nodiscard]] RecordOfHits read_hit_record(const std::vector<std::filesystem::path>& files,
+                                           const HitRecordOptions& options = {});
 
 /// The file in which hits.toml looks up a number, or a name that several files have; nothing: it must be given.
 [[nodiscard]] std::optional<std::size_t> own_part(const std::vector<io::Record>& parts, bool is_force);

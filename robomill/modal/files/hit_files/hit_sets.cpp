@@ -152,7 +152,7 @@ std::optional<FoundHit> found_in_set(std::vector<fs::path>& files) {
     const bool is_force = hit.guess.columns[i].role == Role::force;
     hit.guess.columns[i].name = io::column_name(parts, {.part = part, .place = place}, own_part(parts, is_force));
   }
-  const HitRecord record = read_hit_record(files, {.time = time});
+  const RecordOfHits record = read_hit_record(files, {.time = time});
   hit.sample_rate_hz = hit.guess.sample_rate_hz = record.sample_rate_hz;
   hit.guess.rounded_time = false;
   hit.time = time;
