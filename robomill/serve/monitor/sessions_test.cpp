@@ -165,7 +165,9 @@ TEST_F(MonitorSessionsTest, FindsTheChatterOfARecording) {
     const json& frame = message["frame"];
     EXPECT_EQ(message["id"], id);
     // Before, the speed is not known yet ("speed-unknown").
-    if (frame["time_s"] > 1.0) EXPECT_NEAR(frame["spindle_speed_rpm"], 3000.0, 3.0);
+    if (frame["time_s"] > 1.0) {
+      EXPECT_NEAR(frame["spindle_speed_rpm"], 3000.0, 3.0);
+    }
     if (frame["spectrum"].is_null()) continue;
     ASSERT_EQ(frame["spectrum"].get<std::string>().size(), bands);
     if (frame["state"] != "chatter") {
