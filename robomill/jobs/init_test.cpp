@@ -419,7 +419,7 @@ TEST_F(Init, UnitsThatNoRecordStatesAreListed) {
   put("hit_x_1.csv", record("time_s,force,ax,ay"));
   EXPECT_EQ(made({.kind = Template::hits}).notes,
             (std::vector<std::string>{
-                "1 record of hits was found in " + folder_.path().string() + ": what is guessed is marked, check it.",
+                "1 record of hits was found in " + at("").parent_path().string() + ": what is guessed is marked, check it.",
                 "Assumed: Forces in records without a unit: N (acquisition.force_mv_per_n of hits.toml)",
                 "Assumed: Responses in records without a unit: m/s² (acquisition.response_mv_per_m_per_s2 of "
                 "hits.toml)"}));
