@@ -417,12 +417,13 @@ TEST_F(Init, HitsInOtherUnitsAreConverted) {
 // Nothing that is assumed stays silent.
 TEST_F(Init, UnitsThatNoRecordStatesAreListed) {
   put("hit_x_1.csv", record("time_s,force,ax,ay"));
-  EXPECT_EQ(made({.kind = Template::hits}).notes,
-            (std::vector<std::string>{
-                "1 record of hits was found in " + at("").parent_path().string() + ": what is guessed is marked, check it.",
-                "Assumed: Forces in records without a unit: N (acquisition.force_mv_per_n of hits.toml)",
-                "Assumed: Responses in records without a unit: m/s² (acquisition.response_mv_per_m_per_s2 of "
-                "hits.toml)"}));
+  EXPECT_EQ(
+      made({.kind = Template::hits}).notes,
+      (std::vector<std::string>{
+          "1 record of hits was found in " + at("").parent_path().string() + ": what is guessed is marked, check it.",
+          "Assumed: Forces in records without a unit: N (acquisition.force_mv_per_n of hits.toml)",
+          "Assumed: Responses in records without a unit: m/s² (acquisition.response_mv_per_m_per_s2 of "
+          "hits.toml)"}));
   std::filesystem::remove(at("hits.toml"));
   put("hit_x_1.csv", record("time_s,force_n,ax_g,ay_g"));
   EXPECT_EQ(made({.kind = Template::hits}).notes.size(), 1U);
