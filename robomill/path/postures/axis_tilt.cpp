@@ -119,6 +119,7 @@ class Crossing {
     }
     std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<AxisTilt> out;
+    out.reserve(walked_directions);
     for (int k = 0; k < walked_directions; ++k) out.push_back(all[static_cast<std::size_t>(k)].second);
     return out;
   }
