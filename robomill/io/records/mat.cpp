@@ -20,6 +20,7 @@
 #include "robomill/io/records/child_reading.hpp"
 #include "robomill/io/records/hdf5_input.hpp"
 #include "robomill/io/records/mat_layout.hpp"
+#include "robomill/io/records/mat_numbers.hpp"
 #include "robomill/io/system/descriptor.hpp"
 
 namespace robomill::io {
@@ -37,27 +38,6 @@ std::string content_of(const Descriptor& memory) {
   if (read_all_at(memory.get(), out, 0, count) != 0) return {};
   out.resize(count);
   return out;
-}
-
-std::size_t bytes_of(matio_classes type) {
-  switch (type) {
-    case MAT_C_DOUBLE:
-    case MAT_C_INT64:
-    case MAT_C_UINT64:
-      return 8;
-    case MAT_C_SINGLE:
-    case MAT_C_INT32:
-    case MAT_C_UINT32:
-      return 4;
-    case MAT_C_INT16:
-    case MAT_C_UINT16:
-      return 2;
-    case MAT_C_INT8:
-    case MAT_C_UINT8:
-      return 1;
-    default:
-      return 0;
-  }
 }
 
 template <class T>
@@ -95,7 +75,7 @@ Eigen::MatrixXd matrix(matio_classes type, const void* data, Eigen::Index rows, 
 
 /// Whether a variable is a matrix of numbers; one that claims more than its file can hold is rejected.
 bool is_matrix(const matvar_t& variable, const std::string& file, std::size_t file_bytes) {
-  const std::size_t width = bytes_of(variable.class_type);
+  const std::size_t width = mat_number_bytes(variable.class_type);
   if (width == 0 || variable.name == nullptr || variable.rank != 2 || variable.isLogical != 0) return false;
   require_held(file, variable.name, variable.dims[0], variable.dims[1], variable.isComplex != 0 ? 2 * width : width,
                file_bytes);

@@ -42,21 +42,6 @@ constexpr std::array<Moving, 35> moving = {
 /// … and those that choose which statements come next.
 constexpr std::array<std::string_view, 4> order_of_statements = {"CALL", "JUMPTO", "LOOPST", "INDEX"};
 
-/// What a feed counts.
-struct FeedUnit {
-  std::string_view word;
-  std::optional<bool> inches;  ///< none: as UNITS says
-  bool per_revolution;
-};
-constexpr std::array<FeedUnit, 8> feed_units = {{{"MMPM", false, false},
-                                                 {"IPM", true, false},
-                                                 {"MMPR", false, true},
-                                                 {"IPR", true, true},
-                                                 {"PERMIN", std::nullopt, false},
-                                                 {"PERREV", std::nullopt, true},
-                                                 {"UPM", std::nullopt, false},
-                                                 {"UPR", std::nullopt, true}}};
-
 char upper(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
@@ -461,45 +446,6 @@ void AptReader::go_straight(const Pose& end, bool rapid) {
   }
   begin_cutting();
   move(Block::Kind::feed, end, feed_duration_s(feed_, (end.tip_m - pose_.tip_m).norm(), turn_rad));
-}
-
-double AptReader::feed_duration_s(const FeedRate& feed, double length_m, double turn_rad) const {
-  if (!(feed.value > 0.0)) {
-    reject("FEDRAT", std::nullopt, "", "must be > 0 where the tool moves at feed", "Is a FEDRAT/ missing before it?");
-  }
-  double per_minute = feed.value;
-  if (feed.per_revolution) {
-    if (!(spindle_speed_rad_per_s_ > 0.0)) {
-      reject("FEDRAT", feed.value, feed.inches ? "in/rev" : "mm/rev", "needs a spindle speed, which no line has given",
-             "Give SPINDL/ in rpm or FEDRAT/ a minute");
-    }
-    per_minute *= spindle_speed_rad_per_s_ / units::rpm;
-  }
-  if (length_m > 0.0) return units::minute * length_m / (per_minute * (feed.inches ? units::inch : units::mm));
-  return units::minute * turn_rad / units::deg / per_minute;
-}
-
-void AptReader::take_feed() {
-  bool inches = inches_;
-  bool per_revolution = false;
-  std::optional<double> feed;
-  for (const std::string_view field : fields_) {
-    const auto* const unit = std::ranges::find(feed_units, field, &FeedUnit::word);
-    if (unit != feed_units.end()) {
-      inches = unit->inches.value_or(inches_);
-      per_revolution = unit->per_revolution;
-    } else if (!field.empty() && field.front() >= 'A' && field.front() <= 'Z') {
-      reject_text("FEDRAT", field, "is no unit of a feed known here", "Known are MMPM, IPM, MMPR, IPR, PERMIN, PERREV");
-    } else if (feed) {
-      reject_text("FEDRAT", shown_, "has two numbers");
-    } else {
-      feed = number_of(field);
-    }
-  }
-  if (!feed) reject("FEDRAT", std::nullopt, "", "has no number");
-  check_feed("FEDRAT", *feed);
-  feed_ = {.value = *feed, .inches = inches, .per_revolution = per_revolution};
-  feed_in_cycle(feed_);
 }
 
 void AptReader::take_units() {

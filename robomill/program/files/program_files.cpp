@@ -189,7 +189,6 @@ class Walk {
 
   /// The error with each tool's lines, moves and time in the place of the parts.
   [[nodiscard]] InvalidInput::Parts with_contents(const SeveralTools& error) const {
-    constexpr std::size_t most_named = 12;
     std::vector<ToolPart> tools;
     for (const ToolPart& part : error.tools()) {
       const auto same = [&](const ToolPart& tool) { return tool.number == part.number && tool.name == part.name; };
@@ -204,7 +203,7 @@ class Walk {
     std::optional<int> first;
     bool first_reads = false;
     for (const ToolPart& tool : tools) {
-      if (listed.size() == most_named) break;
+      if (listed.size() == most_named_tools) break;
       const std::string contents = tool.number && again_ ? ", " + contents_of(*tool.number) : "";
       const bool reads = !contents.starts_with(", cannot");
       if (tool.number && (!first || (reads && !first_reads))) first = tool.number;

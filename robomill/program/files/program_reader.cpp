@@ -204,7 +204,6 @@ void ProgramReader::note_passed(std::size_t lines) const {
 
 void ProgramReader::check_chosen() const {
   if (!reading_.tool || start_) return;
-  constexpr std::size_t most_named = 12;
   std::vector<std::string> listed;
   std::vector<int> named;
   bool mounted = false;
@@ -212,7 +211,7 @@ void ProgramReader::check_chosen() const {
     mounted = mounted || part.number == reading_.tool;
     if (!part.number || std::ranges::find(named, *part.number) != named.end()) continue;
     named.push_back(*part.number);
-    if (listed.size() < most_named) listed.push_back(fmt::format("{} (line {})", part.name, part.line));
+    if (listed.size() < most_named_tools) listed.push_back(fmt::format("{} (line {})", part.name, part.line));
   }
   InvalidInput::Parts parts = {.where = file_, .field = "program.tool", .number = *reading_.tool};
   if (mounted) {
@@ -324,6 +323,16 @@ void ProgramReader::dwell(double duration_s, OperatorStop operator_stop) {
 void ProgramReader::begin_steps() {
   next_step_ = 0;
   ready_ = advance();
+}
+
+void ProgramReader::begin_return(const Pose& end, double height_m) {
+  static_cast<void>(turn_to(end.axis));
+  const auto lifted = [&](const Eigen::Vector3d& tip_m) { return Eigen::Vector3d(tip_m.x(), tip_m.y(), height_m); };
+  steps_.clear();
+  steps_.push_back({.tip_m = lifted(pose_.tip_m)});
+  steps_.push_back({.tip_m = lifted(end.tip_m), .axis = end.axis});
+  steps_.push_back({.tip_m = end.tip_m});
+  begin_steps();
 }
 
 bool ProgramReader::take_step() {

@@ -155,6 +155,8 @@ class ProgramReader {
   void dwell(double duration_s, OperatorStop operator_stop = OperatorStop::none);
   /// Begins to make blocks of `steps_`.
   void begin_steps();
+  /// … of rapids up to a height, across with the turn of the axis, and down. @throws InvalidInput as turn_to
+  void begin_return(const Pose& end, double height_m);
   /// Makes the next block of `steps_`; false where they have no more.
   bool take_step();
   void skip(std::string_view what) const {

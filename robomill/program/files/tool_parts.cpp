@@ -10,12 +10,11 @@ namespace robomill::program {
 namespace {
 
 constexpr std::size_t most_parts = 100;  ///< that are kept
-constexpr std::size_t most_named = 12;
 
 InvalidInput::Parts with_tools(InvalidInput::Parts parts, const std::vector<ToolPart>& tools, std::size_t count) {
   std::vector<std::string> listed;
   for (const ToolPart& part : tools) {
-    if (listed.size() == most_named) break;
+    if (listed.size() == most_named_tools) break;
     listed.push_back(
         fmt::format("{} (line {}, {} line{})", part.name, part.line, part.lines, part.lines == 1 ? "" : "s"));
   }

@@ -61,6 +61,8 @@ class ToolParts {
   std::optional<ToolPart> between_;
 };
 
+/// Tools that a message lists.
+inline constexpr std::size_t most_named_tools = 12;
 /// "a, b and c", and how many more there are.
 [[nodiscard]] std::string list_text(const std::vector<std::string>& listed, std::size_t more);
 

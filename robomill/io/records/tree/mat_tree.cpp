@@ -12,6 +12,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/records/mat_layout.hpp"
+#include "robomill/io/records/mat_numbers.hpp"
 #include "robomill/io/records/tree/tree_builder.hpp"
 
 namespace robomill::io {
@@ -22,28 +23,6 @@ constexpr std::size_t most_elements = 4096, longest_mat_text = 4096;
 
 using OpenMat = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
 using OwnedVariable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
-
-/// [bytes] of a value; 0: it is no number.
-std::size_t number_bytes(matio_classes type) {
-  switch (type) {
-    case MAT_C_DOUBLE:
-    case MAT_C_INT64:
-    case MAT_C_UINT64:
-      return 8;
-    case MAT_C_SINGLE:
-    case MAT_C_INT32:
-    case MAT_C_UINT32:
-      return 4;
-    case MAT_C_INT16:
-    case MAT_C_UINT16:
-      return 2;
-    case MAT_C_INT8:
-    case MAT_C_UINT8:
-      return 1;
-    default:
-      return 0;
-  }
-}
 
 template <class T>
 double value_at(const void* data, std::uint64_t place) {
@@ -119,7 +98,7 @@ class MatTreeReader {
   bool is_wanted(const matvar_t& variable, const std::string& name) {
     if (variable.class_type == MAT_C_STRUCT || variable.class_type == MAT_C_CELL) return true;
     if (variable.class_type == MAT_C_CHAR) return elements_of(variable) <= longest_mat_text;
-    const std::size_t width = number_bytes(variable.class_type);
+    const std::size_t width = mat_number_bytes(variable.class_type);
     if (width == 0 || variable.isLogical != 0) return false;
     std::uint64_t rows = 0, columns = 0;
     if (!squeezed(sides_of(variable), rows, columns)) {
@@ -144,7 +123,8 @@ class MatTreeReader {
         add_text(variable, parent, name, key);
         break;
       default:
-        if (number_bytes(variable.class_type) > 0 && variable.isLogical == 0) add_numbers(variable, parent, name, key);
+        if (mat_number_bytes(variable.class_type) > 0 && variable.isLogical == 0)
+          add_numbers(variable, parent, name, key);
     }
   }
 
@@ -226,7 +206,7 @@ class MatTreeReader {
     if (fault.empty()) fault = TreeBuilder::lie_fault(rows, columns);
     if (!fault.empty()) return add_fault(parent, name, key, std::move(fault));
     builder_.require_room(name, rows, columns);
-    if (variable.data == nullptr || variable.nbytes / number_bytes(variable.class_type) / columns < rows) {
+    if (variable.data == nullptr || variable.nbytes / mat_number_bytes(variable.class_type) / columns < rows) {
       throw InvalidInput(file_, fmt::format("variable {} cannot be read", name));
     }
     const MatrixLie lie = matrix_lie(rows, columns);

@@ -194,15 +194,8 @@ void AptReader::come_back(const Pose& end) {
   if (is_second_tool()) return;
   lost_line_ = 0;
   made_ = Made::moves;
-  static_cast<void>(turn_to(end.axis));
-  const double height_m = std::max({highest_m_, pose_.tip_m.z(), end.tip_m.z()});
-  const auto lifted = [&](const Vector3d& tip_m) { return Vector3d(tip_m.x(), tip_m.y(), height_m); };
-  steps_.clear();
-  steps_.push_back({.tip_m = lifted(pose_.tip_m)});
-  steps_.push_back({.tip_m = lifted(end.tip_m), .axis = end.axis});
-  steps_.push_back({.tip_m = end.tip_m});
-  highest_m_ = height_m;
-  begin_steps();
+  highest_m_ = std::max({highest_m_, pose_.tip_m.z(), end.tip_m.z()});
+  begin_return(end, highest_m_);
 }
 
 void AptReader::turn_over(const Pose& end) {

@@ -309,14 +309,7 @@ void GcodeReader::come_back(const Pose& end) {
   special_ = true;
   pending_.reset();
   lost_ = {};
-  static_cast<void>(turn_to(end.axis));
-  const double height_m = std::max({highest_m_, pose_.tip_m.z(), end.tip_m.z()});
-  const auto lifted = [&](const Vector3d& tip_m) { return Vector3d(tip_m.x(), tip_m.y(), height_m); };
-  steps_.clear();
-  steps_.push_back({.tip_m = lifted(pose_.tip_m)});
-  steps_.push_back({.tip_m = lifted(end.tip_m), .axis = end.axis});
-  steps_.push_back({.tip_m = end.tip_m});
-  begin_steps();
+  begin_return(end, std::max({highest_m_, pose_.tip_m.z(), end.tip_m.z()}));
 }
 
 }  // namespace robomill::program
