@@ -74,7 +74,8 @@ Verb frf_verb() {
           .button = "Estimate FRFs",
           .purpose = "hammer hits to frequency response functions",
           .more =
-              "Hits are CSV, TXT, MAT, UFF, WAV, LVM or TDMS, named in hits.toml, or given in its place where their "
+              "Hits are CSV, TXT, MAT, UFF, WAV, LVM, TDMS, HDF5 or NPY, named in hits.toml, or given in its place "
+              "where their "
               "columns have names and units. Each hit of a record is judged, each FRF has a grade, and each fault a "
               "remedy.",
           .example = "frf hits.toml -o tip.uff",
