@@ -12,7 +12,7 @@
 namespace robomill::cell {
 
 program::ProgramReading program_reading(const Cell& cell) {
-  program::ProgramReading reading = {.rotary = cell.rotary, .tool = cell.program_tool, .frames = cell.program_frames};
+  program::ProgramReading reading = {.rotary = cell.rotary, .tool = cell.tool_choice, .frames = cell.program_frames};
   if (!cell.machine.empty()) reading.machine = program::parse_machine(cell.machine);
   return reading;
 }

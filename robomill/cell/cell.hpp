@@ -35,7 +35,7 @@ struct Cell {
   std::string machine = {};  ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
                              ///< "xyzbc-head"; empty where not said
   program::Rotary rotary = program::Rotary::machine;    ///< how the axis goes where those words turn
-  std::optional<int> program_tool = {};                 ///< whose part of a program is read; none: it has one tool
+  program::ToolChoice tool_choice = {};                 ///< what of a program is read; none: it has one tool
   std::vector<program::WorkFrame> program_frames = {};  ///< of G-code, with their offsets in the control's table
   double redundant_gamma_rad = 0.0;                     ///< turn of the flange about the tool's axis, robot::ToolPose
   bool gamma_given = false;                             ///< that turn is prescribed; else it is free to choose

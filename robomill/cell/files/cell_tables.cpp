@@ -295,11 +295,22 @@ const Schema<Cell>& program_words_table() {
                       "the shortest arc between the ends of a straight move")
            .words({"machine", "great-circle"})
            .read_by(read_rotary),
-       key("tool", &Cell::program_tool,
-           "the tool whose part of a program is read: the number that T, LOADTL or LOAD/TOOL gives it (tool.number is "
-           "the "
-           "robot controller's and chooses none); without it a program may cut with one tool alone")
-           .at_least(0.0),
+       of(&Cell::tool_choice,
+          key("tool", &program::ToolChoice::number,
+              "the tool whose part of a program is read: the number that T, LOADTL or LOAD/TOOL gives it (tool.number "
+              "is the robot controller's and chooses none); without it a program may cut with one tool alone")
+              .as("tool.number")
+              .at_least(0.0)),
+       of(&Cell::tool_choice,
+          key("tool_name", &program::ToolChoice::name,
+              "in place of tool: the name that TOOL PATH gives it, of programs that give no numbers")
+              .as("tool.name")),
+       of(&Cell::tool_choice,
+          key("tool_part", &program::ToolChoice::part,
+              "which of the tool's parts is read: the first, second, … of its moves between those of other tools; "
+              "without it the tool has one part")
+              .as("tool.part")
+              .at_least(1.0)),
        frames_key()});
   return table;
 }

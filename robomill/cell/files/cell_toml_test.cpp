@@ -222,12 +222,16 @@ TEST(CellToml, SaysHowProgramsAreRead) {
   const program::ProgramReading given = program_reading(read_cell(folder.file("cell.toml", good)));
   EXPECT_EQ(given.machine, program::Machine::xyzac_trt);
   EXPECT_EQ(given.rotary, program::Rotary::machine);
-  EXPECT_FALSE(given.tool.has_value());
+  EXPECT_FALSE(given.tool.given());
   const std::string of_tool = with("length_mm = 100", "length_mm = 100\nnumber = 3");
-  EXPECT_FALSE(program_reading(read_cell(folder.file("cell.toml", of_tool))).tool.has_value())
+  EXPECT_FALSE(program_reading(read_cell(folder.file("cell.toml", of_tool))).tool.given())
       << "the robot controller's number of the tool is not the program's";
   const std::string with_tool = with("machine = \"xyzac-trt\"", "machine = \"xyzac-trt\"\ntool = 4");
-  EXPECT_EQ(program_reading(read_cell(folder.file("cell.toml", with_tool))).tool, 4);
+  EXPECT_EQ(program_reading(read_cell(folder.file("cell.toml", with_tool))).tool.number, 4);
+  const std::string with_part = with("machine = \"xyzac-trt\"", "tool_name = \"MILL\"\ntool_part = 2");
+  const program::ToolChoice part = program_reading(read_cell(folder.file("cell.toml", with_part))).tool;
+  EXPECT_EQ(part.name, "MILL");
+  EXPECT_EQ(part.part, 2);
   const std::string chosen = with("machine = \"xyzac-trt\"", "rotary = \"great-circle\"");
   const program::ProgramReading shortest = program_reading(read_cell(folder.file("cell.toml", chosen)));
   EXPECT_FALSE(shortest.machine.has_value());
@@ -304,6 +308,11 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
          "cell.toml:29: program.rotary = \"straight\"; must be one of \"machine\", \"great-circle\"");
   expect("machine = \"xyzac-trt\"", "tool = -4", "cell.toml:29: program.tool = -4; must be >= 0");
   expect("machine = \"xyzac-trt\"", "tool = 4.5", "cell.toml:29: program.tool");
+  expect("machine = \"xyzac-trt\"", "tool = 4\ntool_part = 0", "cell.toml:30: program.tool_part = 0; must be >= 1");
+  expect("machine = \"xyzac-trt\"", "tool_part = 2",
+         "cell.toml:29: program.tool_part = 2; is one of a tool's, and no tool is chosen");
+  expect("machine = \"xyzac-trt\"", "tool = 4\ntool_name = \"MILL\"",
+         "cell.toml:29: program.tool: is given beside the tool's name, \"MILL\": give one of the two");
   expect("xyzac-trt", "xyzac", "cell.toml:29: program.machine = \"xyzac\"; must be one of \"xyzac-trt\"");
   expect("[-10.09, 9.36", "[-1000, 9.36",
          "cell.toml:22: robot.start_joints_deg: must lie within the limits; joint 1 has");

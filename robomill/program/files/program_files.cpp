@@ -87,8 +87,8 @@ class Walk {
         calls_(file_, lines) {
     if (format_ == ProgramFormat::gcode) require_known_dialect(path, lines_.head());
     require_frames_of_gcode(file_, reading_, format_);
-    by_t_ =
-        format_ == ProgramFormat::gcode && reading_.tool && again_ && GcodeReader::changes_tool_by_t(lines(), file_);
+    by_t_ = format_ == ProgramFormat::gcode && reading_.tool.given() && again_ &&
+            GcodeReader::changes_tool_by_t(lines(), file_);
     begin();
     if (!reader_->start()) {
       throw InvalidInput(file_, "holds no complete position",
@@ -156,13 +156,13 @@ class Walk {
     try {
       reader_->finish();
     } catch (const SeveralTools& error) {
-      if (reading_.tool) throw;
+      if (reading_.tool.given()) throw;
       throw InvalidInput(with_contents(error));
     }
   }
 
   /// What a choice of the tool would read: "3 moves, 4.8 s at feed".
-  [[nodiscard]] std::string contents_of(int tool) const {
+  [[nodiscard]] std::string contents_of(const ToolChoice& tool) const {
     ProgramReading reading = reading_;
     reading.tool = tool;
     std::size_t moves = 0;
@@ -187,33 +187,56 @@ class Walk {
     return fmt::format("{} move{}, {} at feed", moves, moves == 1 ? "" : "s", time);
   }
 
-  /// The error with each tool's lines, moves and time in the place of the parts.
-  [[nodiscard]] InvalidInput::Parts with_contents(const SeveralTools& error) const {
-    std::vector<ToolPart> tools;
-    for (const ToolPart& part : error.tools()) {
-      const auto same = [&](const ToolPart& tool) { return tool.number == part.number && tool.name == part.name; };
-      const auto found = std::ranges::find_if(tools, same);
-      if (found == tools.end()) {
-        tools.push_back(part);
-      } else {
-        found->lines += part.lines;
+  /// The parts of the tools. A reader that has found a second tool lists the others and no moves: one that reads a
+  /// single part follows them all.
+  [[nodiscard]] std::vector<NumberedPart> parts_of(const SeveralTools& error) const {
+    std::vector<NumberedPart> listed = numbered_parts(error.tools());
+    if (!again_) return listed;
+    for (const NumberedPart& one : listed) {
+      if (!one.part.can_be_chosen()) continue;
+      ProgramReading reading = reading_;
+      reading.tool = choice_of(one);
+      reading.tool.part = 1;
+      try {
+        Walk walk(open_, path_, reading, 0, true);
+        Block block;
+        while (walk.next(block)) {
+        }
+        return numbered_parts(walk.reader_->tools().parts());
+      } catch (const InvalidInput&) {
+        continue;  // the next one may be read
       }
     }
+    return listed;
+  }
+
+  /// The error with each tool's lines, moves and time in the place of the parts.
+  [[nodiscard]] InvalidInput::Parts with_contents(const SeveralTools& error) const {
+    const std::vector<NumberedPart> tools = parts_of(error);
     std::vector<std::string> listed;
-    std::optional<int> first;
+    std::optional<ToolChoice> first;
     bool first_reads = false;
-    for (const ToolPart& tool : tools) {
+    for (const NumberedPart& one : tools) {
       if (listed.size() == most_named_tools) break;
-      const std::string contents = tool.number && again_ ? ", " + contents_of(*tool.number) : "";
+      const ToolPart& part = one.part;
+      const ToolChoice choice = choice_of(one);
+      const bool can_choose = part.can_be_chosen();
+      const std::string contents = can_choose && again_ ? ", " + contents_of(choice) : "";
       const bool reads = !contents.starts_with(", cannot");
-      if (tool.number && (!first || (reads && !first_reads))) first = tool.number;
-      first_reads = first_reads || (tool.number && reads);
-      listed.push_back(fmt::format("{} (line {}, {} line{}{})", tool.name, tool.line, tool.lines,
-                                   tool.lines == 1 ? "" : "s", contents));
+      if (can_choose && (!first || (reads && !first_reads))) first = choice;
+      first_reads = first_reads || (can_choose && reads);
+      listed.push_back(fmt::format("{} (line {}, {} line{}{})", one.count > 1 ? text_of(choice) : part.name, part.line,
+                                   part.lines, part.lines == 1 ? "" : "s", contents));
     }
     InvalidInput::Parts parts = error.bare();
     parts.rule += "; the program has " + list_text(listed, tools.size() - listed.size());
-    if (first) parts.hint = fmt::format("program.tool = {} in the cell reads that tool's part alone", *first);
+    if (first) {
+      const std::string tool = first->number ? fmt::format("program.tool = {}", *first->number)
+                                             : fmt::format("program.tool_name = \"{}\"", first->name);
+      parts.hint = first->part ? fmt::format("{} and program.tool_part = {} in the cell read that part alone", tool,
+                                             *first->part)
+                               : fmt::format("{} in the cell reads that tool's part alone", tool);
+    }
     return parts;
   }
 
@@ -267,6 +290,16 @@ Rotary parse_rotary(std::string_view name) {
                                          .rule = "must be one of \"machine\", \"great-circle\""});
 }
 
+void ToolChoice::validate() const {
+  if (number && !name.empty()) {
+    throw InvalidInput("number", fmt::format("is given beside the tool's name, \"{}\": give one of the two", name));
+  }
+  if (number && *number < 0) throw InvalidInput("number", *number, "", "must be >= 0");
+  if (!part) return;
+  if (!given()) throw InvalidInput("part", *part, "", "is one of a tool's, and no tool is chosen");
+  if (*part < 1) throw InvalidInput("part", *part, "", "must be >= 1");
+}
+
 void ProgramReading::validate() const {
   constexpr double least_m = 1e-9;
   if (!(chord_tolerance_m >= least_m && chord_tolerance_m < 1.0)) {
@@ -275,6 +308,11 @@ void ProgramReading::validate() const {
   constexpr double least_rad = 1e-9;
   if (!(axis_tolerance_rad >= least_rad && axis_tolerance_rad < 1.0)) {
     throw InvalidInput("axis_tolerance_rad", axis_tolerance_rad, "rad", "must be >= 1e-9 and < 1");
+  }
+  try {
+    tool.validate();
+  } catch (const InvalidInput& error) {
+    throw within("tool.", error);
   }
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string member = fmt::format("frames[{}].", i + 1);

@@ -54,6 +54,21 @@ struct ROBOMILL_API WorkFrame {
 /// @throws InvalidInput naming the field program.frames.code
 [[nodiscard]] ROBOMILL_API int parse_work_frame(std::string_view code);
 
+/// Of a program that cuts with several tools, what is read.
+struct ROBOMILL_API ToolChoice {
+  std::optional<int> number = {};  ///< that T, LOADTL or LOAD/TOOL gives
+  std::string name = {};           ///< of TOOL PATH, where no number is given; not both
+  /// Which of the tool's parts, from 1 on: its moves between those of other tools. None: it has one part.
+  std::optional<int> part = {};
+  [[nodiscard]] bool given() const { return number || !name.empty(); }
+  /// The tool, whatever its part.
+  [[nodiscard]] bool is(std::optional<int> other_number, const std::string& other_name) const {
+    return number ? number == other_number : !other_number && name == other_name;
+  }
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
 /// How to read a program.
 struct ROBOMILL_API ProgramReading {
   std::optional<Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
@@ -63,9 +78,9 @@ struct ROBOMILL_API ProgramReading {
   /// same time.
   double axis_tolerance_rad = 1.7453292519943296e-5;
   std::optional<ProgramFormat> format = {};  ///< none: by the file's ending
-  /// Only what this tool (T4, LOADTL/4) moves is read, modes follow through the parts of the others; none: a program
-  /// that cuts with several tools is rejected.
-  std::optional<int> tool = {};
+  /// Only what this tool moves is read, modes follow through the parts of the others; none: a program that cuts with
+  /// several tools is rejected.
+  ToolChoice tool = {};
   /// Work frames of G-code, each once, as if the control's table had these offsets when the program begins: W is the
   /// frame in which the program begins, and positions in another one are moved by the difference of both offsets. A
   /// program that uses several frames needs all of them, from here or from its own G10 L2, which sets the table when it
@@ -104,8 +119,8 @@ struct ROBOMILL_API ProgramReading {
 /// point.
 ///
 /// Several tools: of the tool that the reading chooses, the first complete position after its change makes the start.
-/// Parts of other tools stand in `skipped` with their first lines. A chosen tool that the program does not have, or
-/// that moves again after another one has moved, is rejected.
+/// Parts of other tools stand in `skipped` with their first lines. A chosen tool or part that the program does not
+/// have is rejected, and a tool that moves again after another one has moved, unless one of its parts is chosen.
 ///
 /// APT/CL (.apt .cls .cl .ncl .aptsource): GOTO, GODLTA, FROM; RAPID holds for one move; FEDRAT a minute or a
 /// revolution; UNITS (mm unless said), SPINDL, DELAY in seconds. Arcs (CIRCLE, MOVARC, TLON,GOFWD) become chords, CYCLE

@@ -193,7 +193,7 @@ void ProgramReader::begin_part_move() {
          fmt::format("moves again in this line after {} (line {}) has moved: what that one cuts would be missing "
                      "between the two parts",
                      other->name, other->line),
-         "Write a file for each part");
+         "program.tool_part = 1 in the cell reads the part before it alone, 2 the one that begins here");
 }
 
 void ProgramReader::note_passed(std::size_t lines) const {
@@ -203,24 +203,39 @@ void ProgramReader::note_passed(std::size_t lines) const {
 }
 
 void ProgramReader::check_chosen() const {
-  if (!reading_.tool || start_) return;
+  const ToolChoice& chosen = reading_.tool;
+  if (!chosen.given() || start_) return;
   std::vector<std::string> listed;
-  std::vector<int> named;
+  std::size_t tools = 0;
   bool mounted = false;
-  for (const ToolPart& part : tools_.parts()) {
-    mounted = mounted || part.number == reading_.tool;
-    if (!part.number || std::ranges::find(named, *part.number) != named.end()) continue;
-    named.push_back(*part.number);
-    if (listed.size() < most_named_tools) listed.push_back(fmt::format("{} (line {})", part.name, part.line));
+  for (const NumberedPart& one : numbered_parts(tools_.parts())) {
+    mounted = mounted || chosen.is(one.part.number, one.part.name);
+    if (one.number > 1 || !one.part.can_be_chosen()) continue;
+    ++tools;
+    if (listed.size() < most_named_tools) listed.push_back(fmt::format("{} (line {})", one.part.name, one.part.line));
   }
-  InvalidInput::Parts parts = {.where = file_, .field = "program.tool", .number = *reading_.tool};
-  if (mounted) {
+  InvalidInput::Parts parts = {.where = file_};
+  if (chosen.number) {
+    parts.field = "program.tool";
+    parts.number = *chosen.number;
+  } else {
+    parts.field = "program.tool_name";
+    parts.value = fmt::format("\"{}\"", chosen.name);
+  }
+  const int moved = tools_.moved_parts();
+  if (mounted && chosen.part && moved > 0 && *chosen.part > moved) {
+    parts.field = "program.tool_part";
+    parts.number = *chosen.part;
+    parts.value = {};
+    parts.rule = fmt::format("is no part of {}, which moves in {} part{}",
+                             text_of({.number = chosen.number, .name = chosen.name}), moved, moved == 1 ? "" : "s");
+  } else if (mounted) {
     parts.rule = "comes to no complete position: X, Y and Z after its change";
   } else if (listed.empty()) {
     parts.rule = "is no tool of this program, which names none";
     parts.hint = "Take the key out to read the whole program";
   } else {
-    parts.rule = "is no tool of this program: it has " + list_text(listed, named.size() - listed.size());
+    parts.rule = "is no tool of this program: it has " + list_text(listed, tools - listed.size());
   }
   throw InvalidInput(std::move(parts));
 }

@@ -63,11 +63,11 @@ void check_wanted(const std::string& file, const Program& as_read, const Program
   }
 }
 
-/// The parts of the tools that were not read are what they were.
-void verify_other_tools(const RewriteJob& job, const std::filesystem::path& name, const Rewriter::Result& result) {
-  for (const int tool : result.other_tools) {
+/// The parts that were not read are what they were.
+void verify_others(const RewriteJob& job, const std::filesystem::path& name, const Rewriter::Result& result) {
+  for (const ToolChoice& part : result.others) {
     ProgramReading reading = job.reading;
-    reading.tool = tool;
+    reading.tool = part;
     Program before;
     try {
       before = read_program_text(std::string(job.text), name, reading);
@@ -77,7 +77,7 @@ void verify_other_tools(const RewriteJob& job, const std::filesystem::path& name
     const auto fail = [&](std::size_t line, const std::string& why) {
       throw InvalidInput(InvalidInput::Parts{
           .where = fmt::format("{}:{}", job.file, line),
-          .rule = fmt::format("could not be rewritten: in the part of T{}, which must stay, {}", tool, why)});
+          .rule = fmt::format("could not be rewritten: in {}, which must stay, {}", text_of(part), why)});
     };
     Program after;
     try {
@@ -160,7 +160,7 @@ Rewritten rewrite_program_text(const std::string& text, const std::filesystem::p
   }
   Rewriter::Result result = rewriter->rewrite(header);
   verify(job, name, result);
-  verify_other_tools(job, name, result);
+  verify_others(job, name, result);
   return std::move(result.rewritten);
 }
 

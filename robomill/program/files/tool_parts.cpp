@@ -24,10 +24,56 @@ InvalidInput::Parts with_tools(InvalidInput::Parts parts, const std::vector<Tool
 
 }  // namespace
 
+std::vector<NumberedPart> numbered_parts(const std::vector<ToolPart>& parts) {
+  std::vector<NumberedPart> out;
+  std::optional<std::size_t> moved_last;
+  for (const ToolPart& part : parts) {
+    const auto same = [&](const NumberedPart& other) {
+      return other.part.number == part.number && other.part.name == part.name;
+    };
+    const auto last = std::find_if(out.rbegin(), out.rend(), same);
+    std::size_t at = static_cast<std::size_t>(std::distance(last, out.rend())) - 1;
+    const bool apart = last != out.rend() && part.moves && last->part.moves && moved_last != at;
+    if (last == out.rend() || apart) {
+      at = out.size();
+      out.push_back({.part = part, .number = apart ? last->number + 1 : 1});
+    } else {
+      last->part.lines += part.lines;
+      last->part.moves = last->part.moves || part.moves;
+    }
+    if (part.moves) moved_last = at;
+  }
+  for (NumberedPart& one : out) {
+    one.count = static_cast<int>(std::ranges::count_if(out, [&](const NumberedPart& other) {
+      return other.part.number == one.part.number && other.part.name == one.part.name;
+    }));
+  }
+  return out;
+}
+
+ToolChoice choice_of(const NumberedPart& part) {
+  ToolChoice out = {.number = part.part.number};
+  if (!out.number) out.name = part.part.name;
+  if (part.count > 1) out.part = part.number;
+  return out;
+}
+
+std::string text_of(const ToolChoice& choice) {
+  const std::string tool = choice.number ? fmt::format("T{}", *choice.number) : choice.name;
+  return choice.part ? fmt::format("part {} of {}", *choice.part, tool) : tool;
+}
+
 std::optional<int> whole_tool(double number) {
   constexpr double most = 99'999'999.0;
   if (!(number >= 0.0 && number <= most && number == std::round(number))) return std::nullopt;
   return static_cast<int>(number);
+}
+
+bool ToolParts::passes() const {
+  if (!chosen_.given()) return false;
+  if (!chosen_.is(now_.number, now_.name)) return true;
+  const int at = moved_parts_ + (moved_parts_ == 0 || between_ ? 1 : 0);
+  return chosen_.part && at != *chosen_.part;
 }
 
 void ToolParts::mount(std::optional<int> number, std::string name, std::size_t line) {
@@ -46,16 +92,17 @@ void ToolParts::move(std::size_t line) {
     now_.lines = 1;
   }
   now_.moves = moved_ = true;
-  if (!chosen_) return;
-  if (!passes()) {
-    chosen_moved_ = true;
-  } else if (chosen_moved_ && !between_) {
-    between_ = now_;
+  if (!chosen_.given()) return;
+  if (!chosen_.is(now_.number, now_.name)) {
+    if (moved_parts_ > 0 && !between_) between_ = now_;
+  } else if (moved_parts_ == 0 || between_) {
+    ++moved_parts_;
+    if (chosen_.part) between_.reset();
   }
 }
 
 void ToolParts::forget() {
-  ToolPart all = {.name = "no tool"};
+  ToolPart all = {.name = before_tools};
   for (const ToolPart& part : parts()) {
     if (part.moves && all.line == 0) all.line = part.line;
     all.moves = all.line > 0;

@@ -2,11 +2,17 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/program/files/program_files.hpp"
 
 namespace robomill::program {
+
+/// Names of what has none.
+inline constexpr const char* before_tools = "no tool";
+inline constexpr const char* nameless_tool = "one without a number";
 
 /// A stretch of a program that one tool makes: from where it is mounted to where the next one is.
 struct ToolPart {
@@ -15,16 +21,32 @@ struct ToolPart {
   std::size_t line = 0;            ///< where it is mounted; before the first tool where it first moves
   std::size_t lines = 0;           ///< statements from there on
   bool moves = false;
+  [[nodiscard]] bool can_be_chosen() const { return number || (name != before_tools && name != nameless_tool); }
 };
 
 /// The number of a tool, where it is whole.
 [[nodiscard]] std::optional<int> whole_tool(double number);
 
+/// One of the parts of a tool: its moves between those of other tools.
+struct NumberedPart {
+  ToolPart part = {};
+  int number = 1;  ///< of the tool's parts, from 1 on
+  int count = 1;   ///< of the tool's parts
+};
+
+/// Mounted parts by tool: those of one tool are one part while no other tool moves between them. In the order in
+/// which they begin.
+[[nodiscard]] std::vector<NumberedPart> numbered_parts(const std::vector<ToolPart>& parts);
+
+/// What reads that part alone.
+[[nodiscard]] ToolChoice choice_of(const NumberedPart& part);
+/// "T4", "part 2 of T4".
+[[nodiscard]] std::string text_of(const ToolChoice& choice);
+
 /// The tools of a program as it mounts them, and which of them are read where one is chosen.
 class ToolParts {
  public:
-  /// @param chosen  none: all of the program is read
-  explicit ToolParts(std::optional<int> chosen) : chosen_(chosen) { now_.name = "no tool"; }
+  explicit ToolParts(ToolChoice chosen) : chosen_(std::move(chosen)) { now_.name = before_tools; }
 
   /// Another statement has come.
   void count_statement() { now_.lines += now_.line > 0 ? 1 : 0; }
@@ -36,12 +58,17 @@ class ToolParts {
   void forget();
 
   /// Moves are not those to be read: another tool is chosen than the one that is mounted.
-  [[nodiscard]] bool passes() const { return chosen_ && now_.number != chosen_; }
+  [[nodiscard]] bool passes() const;
   [[nodiscard]] bool is_mounted(std::optional<int> number, const std::string& name) const {
     return now_.number == number && now_.name == name;
   }
-  /// The part of another tool that has moved since the chosen one did, where that one moves again.
-  [[nodiscard]] const ToolPart* between() const { return between_ && !passes() ? &*between_ : nullptr; }
+  /// The part of another tool that has moved since the chosen one did, where that one moves again and its part is not
+  /// chosen.
+  [[nodiscard]] const ToolPart* between() const {
+    return between_ && !chosen_.part && !passes() ? &*between_ : nullptr;
+  }
+  /// Parts of the chosen tool that have moved.
+  [[nodiscard]] int moved_parts() const { return moved_parts_; }
   /// The part that is not over yet.
   [[nodiscard]] const ToolPart& now() const { return now_; }
   /// Some tool has moved.
@@ -53,12 +80,13 @@ class ToolParts {
  private:
   [[nodiscard]] bool counts(const ToolPart& part) const { return part.line > 0; }
 
-  std::optional<int> chosen_;
+  ToolChoice chosen_;
   std::vector<ToolPart> over_;
   std::size_t over_count_ = 0;
   ToolPart now_;
-  bool moved_ = false, chosen_moved_ = false;
-  std::optional<ToolPart> between_;
+  bool moved_ = false;
+  int moved_parts_ = 0;
+  std::optional<ToolPart> between_;  ///< of another tool, moved since the chosen one did
 };
 
 /// Tools that a message lists.

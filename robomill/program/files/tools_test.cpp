@@ -19,11 +19,18 @@
 namespace robomill::program {
 namespace tools_test {
 
-Program read(const std::string& text, std::optional<int> tool, const std::string& name = "part.nc") {
+/// A tool by its number, by its name, or a part of it; {}: no choice.
+struct Choice : ToolChoice {
+  Choice() = default;
+  Choice(int tool, std::optional<int> one = {}) : ToolChoice{.number = tool, .part = one} {}
+  Choice(const char* called, std::optional<int> one = {}) : ToolChoice{.name = called, .part = one} {}
+};
+
+Program read(const std::string& text, const Choice& tool, const std::string& name = "part.nc") {
   return read_program_text(text, name, {.machine = Machine::xyzac_trt, .tool = tool});
 }
 
-std::string said_of(const std::string& text, std::optional<int> tool, const std::string& name = "part.nc") {
+std::string said_of(const std::string& text, const Choice& tool, const std::string& name = "part.nc") {
   try {
     static_cast<void>(read(text, tool, name));
   } catch (const InvalidInput& error) {
@@ -32,7 +39,7 @@ std::string said_of(const std::string& text, std::optional<int> tool, const std:
   return "";
 }
 
-void expect_rejected(const std::string& text, std::optional<int> tool, const std::string& words,
+void expect_rejected(const std::string& text, const Choice& tool, const std::string& words,
                      const std::string& name = "part.nc") {
   const std::string said = said_of(text, tool, name);
   EXPECT_NE(said.find(words), std::string::npos) << said << "\n" << words;
@@ -132,15 +139,53 @@ TEST(Tools, PartsThatAreNotReadStillSayModes) {
 }
 
 // What T6 cuts between the parts of T4 is missing in those of T4 alone.
-TEST(Tools, OneThatComesBackIsRejected) {
+TEST(Tools, OneThatComesBackIsReadByItsParts) {
   const std::string back =
-      "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG0 X0 Y0 Z0\nG1 Z-1\nM30\n";
-  expect_rejected(back, 4, "part.nc:8: T4: moves again in this line after T6 (line 4) has moved");
+      "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG0 X0 Y0 Z0\nG1 Z-2\nM30\n";
+  expect_rejected(back, 4,
+                  "part.nc:8: T4: moves again in this line after T6 (line 4) has moved: what that one cuts would be "
+                  "missing between the two parts. program.tool_part = 1 in the cell reads the part before it alone, 2 "
+                  "the one that begins here");
   EXPECT_EQ(read(back, 6).blocks.size(), 1U);
-  expect_rejected(back, {}, "T4 (line 1, 7 lines, cannot be read alone: line 8: T4 moves again");
+  expect_rejected(back, {},
+                  "the program has part 1 of T4 (line 1, 3 lines, 1 move, 1 s at feed), T6 (line 4, 3 lines, 1 move, 1 "
+                  "s at feed) and part 2 of T4 (line 7, 4 lines, 1 move, 2 s at feed). program.tool = 4 and "
+                  "program.tool_part = 1 in the cell read that part alone");
+  const Program first = read(back, {4, 1});
+  ASSERT_EQ(first.blocks.size(), 1U);
+  expect_at(first.blocks[0].end, 1, 0, 0);
+  const Program second = read(back, {4, 2});
+  ASSERT_EQ(second.blocks.size(), 1U);
+  expect_at(second.start, 0, 0, 0);
+  expect_at(second.blocks[0].end, 0, 0, -2);
+  EXPECT_NEAR(sums_of(second).time_s, 2.0, 1e-12);
+  ASSERT_FALSE(second.skipped.empty());
+  EXPECT_TRUE(std::ranges::any_of(second.skipped, [](const Skipped& skipped) {
+    return skipped.line == 1 && skipped.what == "the part of T4, 3 lines";
+  })) << "what is not read is listed";
+  expect_rejected(back, {4, 3}, "part.nc: program.tool_part = 3; is no part of T4, which moves in 2 parts");
+  EXPECT_EQ(read(back, {6, 1}).blocks.size(), 1U) << "of one part the first is all";
   EXPECT_EQ(said_of("T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG28\nM30\n", 4), "")
       << "mounted to be ready for the next part alone";
   EXPECT_EQ(read("T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nT4 M6\nG1 X2\nM30\n", 4).blocks.size(), 2U);
+}
+
+TEST(Tools, AChoiceIsOneToolAndOneOfItsParts) {
+  const auto said = [](const ToolChoice& choice) {
+    try {
+      choice.validate();
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said({}), "");
+  EXPECT_EQ(said({.number = 0, .part = 1}), "");
+  EXPECT_EQ(said({.number = 1, .name = "MILL"}),
+            "number: is given beside the tool's name, \"MILL\": give one of the two");
+  EXPECT_EQ(said({.number = -1}), "number = -1; must be >= 0");
+  EXPECT_EQ(said({.name = "MILL", .part = 0}), "part = 0; must be >= 1");
+  EXPECT_EQ(said({.part = 2}), "part = 2; is one of a tool's, and no tool is chosen");
 }
 
 TEST(Tools, TAloneChangesThemWhereNoM6Does) {
@@ -220,6 +265,23 @@ TEST(Tools, OfNx) {
             2U);
 }
 
+TEST(Tools, WithoutNumbersAreChosenByTheirNames) {
+  const std::string text =
+      "TOOL PATH/A,TOOL,MILL\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nTOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\nGOTO/9,0,0\n"
+      "TOOL PATH/C,TOOL,MILL\nGOTO/0,0,0\nGOTO/3,0,0\n";
+  expect_rejected(text, {},
+                  "the program has part 1 of MILL (line 1, 4 lines, 1 move, 1 s at feed), DRILL (line 5, 3 lines, 1 "
+                  "move, 7 s at feed) and part 2 of MILL (line 8, 3 lines, 1 move, 3 s at feed). program.tool_name = "
+                  "\"MILL\" and program.tool_part = 1 in the cell read that part alone",
+                  "part.cls");
+  EXPECT_NEAR(sums_of(read(text, "DRILL", "part.cls")).way_mm, 7.0, 1e-9);
+  EXPECT_NEAR(sums_of(read(text, {"MILL", 2}, "part.cls")).way_mm, 3.0, 1e-9);
+  expect_rejected(text, "SAW",
+                  "program.tool_name = \"SAW\"; is no tool of this program: it has MILL (line 1) and DRILL",
+                  "part.cls");
+  expect_rejected(text, 1, "program.tool = 1; is no tool of this program: it has MILL (line 1) and DRILL", "part.cls");
+}
+
 // W is the system of the program's first position, whichever tool is chosen.
 TEST(Tools, PositionsCountInTheSystemOfTheFirstOne) {
   const std::string text =
@@ -244,7 +306,8 @@ TEST(Tools, AreListedFromWithinSubprograms) {
                   "the program has T1");
 }
 
-Rewritten rewrite(const std::string& text, int tool, double speed, double feed, const std::string& name = "part.nc") {
+Rewritten rewrite(const std::string& text, const Choice& tool, double speed, double feed,
+                  const std::string& name = "part.nc") {
   const ProgramReading reading = {.machine = Machine::xyzac_trt, .tool = tool};
   const Program program = read_program_text(text, name, reading);
   Program wanted = program;
@@ -279,7 +342,7 @@ TEST(Tools, ARewritingLeavesTheOthersAsTheyAre) {
 }
 
 TEST(Tools, ARewritingEndsWhereTheNextPartBegins) {
-  const ProgramReading reading = {.tool = 4};
+  const ProgramReading reading = {.tool = {.number = 4}};
   const Program program = read_program_text(two, "part.nc", reading);
   Program wanted = program;
   wanted.blocks.back().end.tip_m.z() += 1e-3;
@@ -295,37 +358,44 @@ TEST(Tools, ARewritingEndsWhereTheNextPartBegins) {
   EXPECT_NE(rewrite_program_text(two, "part.nc", reading, program, wanted).text.find("X38 Y21"), std::string::npos);
 }
 
-// Random programs of three tools: each part is what it is as a file of its own behind the same modes, and a rewriting
-// of one leaves the others.
+// Random programs of tools that come back: each part is what it is as a file of its own behind the same modes, and a
+// rewriting of one leaves the others.
 TEST(Tools, EachPartIsAProgramOfItsOwn) {
   for (int seed = 0; seed < test::seeds(200); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const auto number = [&](double most) { return std::round(random.uniform(-most, most) * 100.0) / 100.0; };
     std::string text = "G21 G90 G17\n";
-    std::vector<std::string> parts(3);
-    for (int tool = 0; tool < 3; ++tool) {
-      std::string& part = parts[static_cast<std::size_t>(tool)];
-      part = fmt::format("T{} M6\nS{} M3\nG0 X{} Y{} Z{}\n", tool + 1, 1000 * (tool + 1), number(50), number(50), 20.5);
+    std::vector<std::string> parts;
+    std::vector<ToolChoice> choices;
+    for (int at = 0; at < 5; ++at) {
+      int tool = 1 + static_cast<int>(random.index(3));
+      if (at > 0 && tool == choices.back().number) tool = 1 + tool % 3;
+      const auto before =
+          std::ranges::count_if(choices, [&](const ToolChoice& choice) { return choice.number == tool; });
+      choices.push_back({.number = tool, .part = static_cast<int>(before) + 1});
+      std::string& part = parts.emplace_back();
+      part = fmt::format("T{} M6\nS{} M3\nG0 X{} Y{} Z{}\n", tool, 1000 * (at + 1), number(50), number(50), 20.5);
       for (int i = 0; i < 6; ++i) {
         part += fmt::format("G{} X{} Y{} F{}\n", random.uniform(0.0, 1.0) < 0.2 ? 0 : 1, number(50), number(50),
-                            100 + 100 * tool + i);
+                            100 + 100 * at + i);
       }
       part += "G0 Z20.5\n";
       text += part;
     }
     text += "M30\n";
-    for (int tool = 0; tool < 3; ++tool) {
-      const Program chosen = read(text, tool + 1);
-      const Program alone = read("G21 G90 G17\n" + parts[static_cast<std::size_t>(tool)] + "M30\n", {});
+    for (std::size_t at = 0; at < parts.size(); ++at) {
+      const ProgramReading reading = {.machine = Machine::xyzac_trt, .tool = choices[at]};
+      const Program chosen = read_program_text(text, "part.nc", reading);
+      const Program alone = read("G21 G90 G17\n" + parts[at] + "M30\n", {});
       ASSERT_EQ(chosen.blocks.size(), alone.blocks.size()) << text;
       EXPECT_EQ(chosen.start.tip_m, alone.start.tip_m);
       for (std::size_t i = 0; i < alone.blocks.size(); ++i) {
         EXPECT_EQ(chosen.blocks[i].end.tip_m, alone.blocks[i].end.tip_m);
         EXPECT_EQ(chosen.blocks[i].duration_s, alone.blocks[i].duration_s);
       }
-      const std::string again = rewrite(text, tool + 1, 0.7, 1.3).text;
-      for (int other = 0; other < 3; ++other) {
-        EXPECT_EQ(again.find(parts[static_cast<std::size_t>(other)]) == std::string::npos, other == tool) << again;
+      const std::string again = rewrite(text, {*choices[at].number, choices[at].part}, 0.7, 1.3).text;
+      for (std::size_t other = 0; other < parts.size(); ++other) {
+        EXPECT_EQ(again.find(parts[other]) == std::string::npos, other == at) << again;
       }
     }
   }
@@ -353,7 +423,7 @@ TEST(Tools, ChangedTextIsReadOrRejected) {
         text.erase(at, 1 + random.index(9));
       }
     }
-    for (const std::optional<int> tool : {std::optional<int>(), std::optional<int>(1), std::optional<int>(2)}) {
+    for (const Choice& tool : {Choice(), Choice(1), Choice(2), Choice(1, 2)}) {
       try {
         const Program program = read(text, tool);
         for (const Block& block : program.blocks) {

@@ -120,7 +120,7 @@ void AptReader::mount() {
   const std::optional<int> whole = number ? whole_tool(*number) : std::nullopt;
   std::string name = loaded_.empty() ? path_tool_ : loaded_;
   if (whole) tool_ = name = fmt::format("T{}", *whole);
-  mount_tool(whole, name.empty() ? std::string("one without a number") : std::move(name));
+  mount_tool(whole, name.empty() ? std::string(nameless_tool) : std::move(name));
   skip_statement();
 }
 

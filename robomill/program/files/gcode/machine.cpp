@@ -149,7 +149,7 @@ void GcodeReader::begin_cutting() {
                      .hint = "Write a program for each tool, or M6 where the tool changes"};
     second_named_line_ = line_;
   }
-  if (reading_.tool && !cutting_ && length_.value && length_.line < tool_.line) {
+  if (reading_.tool.given() && !cutting_ && length_.value && length_.line < tool_.line) {
     remarks_.assume({.what = fmt::format("The tool's length in line {}", line_),
                      .taken = fmt::format("that of {}, though {} in line {} comes before its change", tools_.now().name,
                                           length_.code, length_.line),

@@ -435,7 +435,7 @@ void GcodeReader::go_straight(const Line& line) {
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
   if (pending_ && motion_ == Motion::feed) reject_unknown(unknown_axis() == nullptr ? "X, Y, Z" : unknown_axis());
   // From a height that the change of the tool has left unknown no move at feed begins.
-  const bool begins_unknown = !start_ && reading_.tool && lost_.value && motion_ == Motion::feed;
+  const bool begins_unknown = !start_ && reading_.tool.given() && lost_.value && motion_ == Motion::feed;
   if (const char* const first = unknown_axis(); begins_unknown && first != nullptr) reject_unknown(first);
   const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const char* const unknown = unknown_axis();

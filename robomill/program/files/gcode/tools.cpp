@@ -42,8 +42,8 @@ void GcodeReader::mount(double number, const char* code) {
   tool_ = {.value = number, .line = line_, .code = code};
   if (!m6_has_come_ && !by_t_) tools_.forget();  // T words before it have mounted nothing
   m6_has_come_ = true;
-  mount_tool(whole_tool(number), number < 0.0 ? std::string("one without a T") : fmt::format("T{:g}", number));
-  if (!reading_.tool || again || passes() || start_ || !tools_.moved()) return;
+  mount_tool(whole_tool(number), number < 0.0 ? std::string(nameless_tool) : fmt::format("T{:g}", number));
+  if (!reading_.tool.given() || again || passes() || start_ || !tools_.moved()) return;
   // The change moves the tool by itself.
   known_ = {};
   lost_ = {.value = true, .line = line_, .code = code};
@@ -55,7 +55,7 @@ void GcodeReader::name_tool(double number) {
   if (by_t_) {
     remarks_.assume({.what = "T without an M6", .taken = "a change of the tool", .key = "M6"});
     mount(number, "T");
-  } else if (!m6_has_come_ && !reading_.tool) {
+  } else if (!m6_has_come_ && !reading_.tool.given()) {
     named_ = {.value = number, .line = line_, .code = fmt::format("T{:g}", number)};
     mount_tool(whole_tool(number), named_.code);
   }

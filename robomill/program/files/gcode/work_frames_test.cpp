@@ -31,7 +31,7 @@ WorkFrame frame(std::string code, double x_mm, double y_mm, double z_mm) {
 const Frames table = {frame("G54", 100, 200, 300), frame("G55", 150, 190, 305), frame("G54.1 P3", -20, 0, 310)};
 
 Program read(const std::string& text, const Frames& frames, std::optional<int> tool = {}) {
-  return read_program_text(text, "part.nc", {.tool = tool, .frames = frames});
+  return read_program_text(text, "part.nc", {.tool = {.number = tool}, .frames = frames});
 }
 
 void expect_said(const std::string& text, const Frames& frames, const std::string& words) {

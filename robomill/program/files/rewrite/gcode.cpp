@@ -50,7 +50,8 @@ GcodeRewriter::GcodeRewriter(const RewriteJob& job)
     : Rewriter(job),
       in_(job.file, job.reading, remarks_),
       out_(std::make_unique<GcodeReader>(job.file, job.reading, remarks_)) {
-  if (!job.reading.tool || !GcodeReader::changes_tool_by_t(ProgramLines(job.file, std::string(job.text)), job.file)) {
+  if (!job.reading.tool.given() ||
+      !GcodeReader::changes_tool_by_t(ProgramLines(job.file, std::string(job.text)), job.file)) {
     return;
   }
   in_.set_changes_tool_by_t();

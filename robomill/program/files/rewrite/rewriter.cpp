@@ -442,10 +442,10 @@ Rewriter::Result Rewriter::rewrite(const std::vector<std::string>& header) {
     if (i == place) write_header(header, result);
     write(i, result);
   }
-  for (const ToolPart& part : in().tools().parts()) {
-    const bool known = !part.number || part.number == job_.reading.tool ||
-                       std::ranges::find(result.other_tools, *part.number) != result.other_tools.end();
-    if (job_.reading.tool && !known) result.other_tools.push_back(*part.number);
+  const ToolChoice& chosen = job_.reading.tool;
+  for (const NumberedPart& one : numbered_parts(in().tools().parts())) {
+    const bool read = chosen.is(one.part.number, one.part.name) && one.number == chosen.part.value_or(1);
+    if (chosen.given() && one.part.moves && !read) result.others.push_back(choice_of(one));
   }
   const std::size_t end = statements_.back().end;
   result.rewritten.text.append(text.substr(end));

@@ -46,7 +46,7 @@ class Rewriter {
   struct Result {
     Rewritten rewritten;
     std::vector<std::size_t> origins;  ///< of each new line: the program's line that it comes from; 0: the header
-    std::vector<int> other_tools;      ///< whose parts of the program are not those that were read
+    std::vector<ToolChoice> others;    ///< parts of the program that are not the one that was read
   };
   /// @throws InvalidInput as rewrite_program
   Result rewrite(const std::vector<std::string>& header);
