@@ -14,10 +14,14 @@
 #include "robomill/base/units.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/program/files/rewrite.hpp"
+#include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::program {
 namespace tools_test {
+
+using test_support::expect_at;
+using test_support::sums_of;
 
 /// A tool by its number, by its name, or a part of it; {}: no choice.
 struct Choice : ToolChoice {
@@ -45,41 +49,23 @@ void expect_rejected(const std::string& text, const Choice& tool, const std::str
   EXPECT_NE(said.find(words), std::string::npos) << said << "\n" << words;
 }
 
-struct Sums {
-  double way_mm = 0.0, time_s = 0.0;
-};
-Sums sums_of(const Program& program) {
-  Sums out;
-  Eigen::Vector3d from = program.start.tip_m;
-  for (const Block& block : program.blocks) {
-    out.way_mm += (block.end.tip_m - from).norm() / units::mm;
-    out.time_s += block.duration_s;
-    from = block.end.tip_m;
-  }
-  return out;
-}
-
-void expect_at(const Pose& pose, double x_mm, double y_mm, double z_mm) {
-  EXPECT_LT((pose.tip_m - units::mm * Eigen::Vector3d(x_mm, y_mm, z_mm)).norm(), 1e-9) << pose.tip_m.transpose();
-}
-
 const std::string two =
     "G21 G90\nT4 M6\nS7000 M3\nG0 X30 Y20 Z12\nG1 Z-1 F300\nX38\nG0 Z12\n"
     "T6 M6\nS9500 M3\nG0 X44 Y-6\nZ3\nG1 Z-2\nY4 F600\nG0 Z12\nM30\n";
 
 TEST(Tools, OneIsChosen) {
   const Program first = read(two, 4);
-  expect_at(first.start, 30, 20, 12);
-  expect_at(first.blocks.back().end, 38, 20, 12);
+  expect_at(first.start, {30, 20, 12});
+  expect_at(first.blocks.back().end, {38, 20, 12});
   EXPECT_EQ(first.blocks.size(), 3U);
-  EXPECT_NEAR(sums_of(first).way_mm, 13.0 + 8.0 + 13.0, 1e-9);
+  EXPECT_NEAR(sums_of(first).way_mm(), 13.0 + 8.0 + 13.0, 1e-9);
   EXPECT_NEAR(sums_of(first).time_s, 60.0 * (13.0 + 8.0) / 300.0, 1e-9);
   EXPECT_NEAR(first.blocks[0].spindle_speed_rad_per_s, 7000.0 * units::rpm, 1e-9);
   const Program second = read(two, 6);
-  expect_at(second.start, 44, -6, 3);
-  expect_at(second.blocks.back().end, 44, 4, 12);
+  expect_at(second.start, {44, -6, 3});
+  expect_at(second.blocks.back().end, {44, 4, 12});
   EXPECT_EQ(second.blocks.front().line, 12U);
-  EXPECT_NEAR(sums_of(second).way_mm, 5.0 + 10.0 + 14.0, 1e-9);
+  EXPECT_NEAR(sums_of(second).way_mm(), 5.0 + 10.0 + 14.0, 1e-9);
   EXPECT_NEAR(sums_of(second).time_s, 60.0 * (5.0 / 300.0 + 10.0 / 600.0), 1e-9) << "F300 holds from the other part";
   EXPECT_NEAR(second.blocks[0].spindle_speed_rad_per_s, 9500.0 * units::rpm, 1e-9);
   const auto parts = [](const Program& program) {
@@ -119,7 +105,7 @@ TEST(Tools, OneThatIsNotThereIsRejected) {
 TEST(Tools, PartsThatAreNotReadStillSayModes) {
   const std::string inches = "G20 G91\nT1 M6\nG0 X1 Y1 Z1\nG2 X1 I7 F1\nG17 G90\nF10\nT2 M6\nG0 X1 Y0 Z0\nG1 X2\nM30\n";
   const Program program = read(inches, 2);
-  expect_at(program.start, 25.4, 0, 0);
+  expect_at(program.start, {25.4, 0, 0});
   EXPECT_NEAR(sums_of(program).time_s, 6.0, 1e-9) << "an arc that could not be read alone does not count";
   const std::string turned = "G21\nT1 M6\nG0 X0 Y0 Z0 A0 C0\nG1 X1 A-30 C90 F60\nT2 M6\nG0 X5 Y0 Z0\nG1 X6\nM30\n";
   EXPECT_LT(
@@ -127,7 +113,7 @@ TEST(Tools, PartsThatAreNotReadStillSayModes) {
       1e-12)
       << "the rotary axes stay where the other tool's part has left them";
   const std::string local = "G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG52 X10\nT2 M6\nG0 X0 Y0 Z0\nG1 X1\nM30\n";
-  expect_at(read(local, 2).start, 10, 0, 0);
+  expect_at(read(local, 2).start, {10, 0, 0});
   const std::string shifted = "G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG92 X10\nT2 M6\nG0 X0 Y0 Z0\nG1 X1\nM30\n";
   expect_rejected(shifted, 2, "part.nc:5: G92: moves the program's frame by a position that is not known here");
   EXPECT_EQ(said_of("G21\nT1 M6\nG0 X0 Y0 Z0\nG92 X10\nG92.1\nT2 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nM30\n", 2), "");
@@ -153,11 +139,11 @@ TEST(Tools, OneThatComesBackIsReadByItsParts) {
                   "program.tool_part = 1 in the cell read that part alone");
   const Program first = read(back, {4, 1});
   ASSERT_EQ(first.blocks.size(), 1U);
-  expect_at(first.blocks[0].end, 1, 0, 0);
+  expect_at(first.blocks[0].end, {1, 0, 0});
   const Program second = read(back, {4, 2});
   ASSERT_EQ(second.blocks.size(), 1U);
-  expect_at(second.start, 0, 0, 0);
-  expect_at(second.blocks[0].end, 0, 0, -2);
+  expect_at(second.start, {0, 0, 0});
+  expect_at(second.blocks[0].end, {0, 0, -2});
   EXPECT_NEAR(sums_of(second).time_s, 2.0, 1e-12);
   ASSERT_FALSE(second.skipped.empty());
   EXPECT_TRUE(std::ranges::any_of(second.skipped, [](const Skipped& skipped) {
@@ -191,7 +177,7 @@ TEST(Tools, AChoiceIsOneToolAndOneOfItsParts) {
 TEST(Tools, TAloneChangesThemWhereNoM6Does) {
   const std::string named = "T1\nS1000 M3\nG0 X0 Y0 Z0\nG1 X1 F60\nT2\nG0 X0 Y0 Z2\nG1 X4\nM30\n";
   const Program program = read(named, 2);
-  expect_at(program.start, 0, 0, 2);
+  expect_at(program.start, {0, 0, 2});
   EXPECT_NEAR(sums_of(program).time_s, 4.0, 1e-12);
   ASSERT_EQ(program.assumed.size(), 1U);
   EXPECT_EQ(program.assumed[0].what, "T without an M6");
@@ -210,11 +196,11 @@ TEST(Tools, OfApt) {
       "GOTO/10,0,0\nLOAD/TOOL,2\nSELECT/TOOL,1\nRAPID\nGOTO/0,5,10\nGODLTA/0,0,-10\nFEDRAT/200\nGOTO/0,5,-1,0,0,1\n"
       "FINI\n";
   const Program first = read(file, 1, "part.apt");
-  expect_at(first.start, 0, 0, 10);
-  EXPECT_NEAR(sums_of(first).way_mm, 20.0, 1e-9);
+  expect_at(first.start, {0, 0, 10});
+  EXPECT_NEAR(sums_of(first).way_mm(), 20.0, 1e-9);
   EXPECT_NEAR(sums_of(first).time_s, 12.0, 1e-9);
   const Program second = read(file, 2, "part.apt");
-  expect_at(second.start, 0, 5, 10);
+  expect_at(second.start, {0, 5, 10});
   EXPECT_NEAR(sums_of(second).time_s, 60.0 * (10.0 / 100.0 + 1.0 / 200.0), 1e-9);
   expect_rejected(
       file, {},
@@ -256,7 +242,7 @@ TEST(Tools, OfNx) {
                   "part.cls");
   const std::string two = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
   expect_rejected(two, {}, "T4 (line 2, 4 lines, 1 move, 1 s at feed) and T5 (line 7,", "part.cls");
-  EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm, 7.0, 1e-9);
+  EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm(), 7.0, 1e-9);
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nGOHOME\nLOADTL/2\nGOTO/5,5,5\nGOTO/6,5,5\n", {},
                   "part.cls:6: LOADTL: mounts another tool", "part.cls");
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2\nFROM/0,0,100\nGOTO/5,5,5\n", {},
@@ -274,8 +260,8 @@ TEST(Tools, WithoutNumbersAreChosenByTheirNames) {
                   "move, 7 s at feed) and part 2 of MILL (line 8, 3 lines, 1 move, 3 s at feed). program.tool_name = "
                   "\"MILL\" and program.tool_part = 1 in the cell read that part alone",
                   "part.cls");
-  EXPECT_NEAR(sums_of(read(text, "DRILL", "part.cls")).way_mm, 7.0, 1e-9);
-  EXPECT_NEAR(sums_of(read(text, {"MILL", 2}, "part.cls")).way_mm, 3.0, 1e-9);
+  EXPECT_NEAR(sums_of(read(text, "DRILL", "part.cls")).way_mm(), 7.0, 1e-9);
+  EXPECT_NEAR(sums_of(read(text, {"MILL", 2}, "part.cls")).way_mm(), 3.0, 1e-9);
   expect_rejected(text, "SAW",
                   "program.tool_name = \"SAW\"; is no tool of this program: it has MILL (line 1) and DRILL",
                   "part.cls");
@@ -288,7 +274,7 @@ TEST(Tools, PositionsCountInTheSystemOfTheFirstOne) {
       "MSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\nFEDRAT/100\nGOTO/0,0,10,.6,0,.8\nGOTO/0,0,0,.6,0,.8\n"
       "MSYS/100,0,0,1,0,0,0,1,0\nLOAD/TOOL,2\nGOTO/0,0,10\nGOTO/0,0,0\n";
   const Program program = read(text, 2, "part.cls");
-  expect_at(program.start, 100, 0, 10);
+  expect_at(program.start, {100, 0, 10});
   EXPECT_EQ(program.start.axis, Eigen::Vector3d::UnitZ());
   EXPECT_FALSE(program.assumed.empty());
 }

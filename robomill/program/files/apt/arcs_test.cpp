@@ -16,6 +16,7 @@ namespace robomill::program {
 namespace apt_arcs_test {
 
 using Eigen::Vector3d;
+using test_support::sums_of;
 
 constexpr double mm = 1e-3;
 constexpr double pi = std::numbers::pi;
@@ -29,27 +30,13 @@ void expect_rejected(const std::string& text, const std::string& words) {
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
 
-struct Sums {
-  double feed_mm = 0.0, rapid_mm = 0.0, time_s = 0.0;
-};
-Sums sums(const Program& program) {
-  Sums out;
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    const Block& block = program.blocks[i];
-    const double way_mm = (block.end.tip_m - program.begin_of(i).tip_m).norm() / mm;
-    (block.kind == Block::Kind::feed ? out.feed_mm : out.rapid_mm) += way_mm;
-    out.time_s += block.duration_s;
-  }
-  return out;
-}
-
 void expect_end(const Program& program, const Vector3d& at_mm) {
   EXPECT_LT((program.blocks.back().end.tip_m - mm * at_mm).norm(), 1e-9);
 }
 
 /// Feed length within 0.1 %, time within 1 %.
 void expect_way(const Program& program, double feed_mm, double feed_mm_per_min) {
-  const Sums got = sums(program);
+  const test_support::Sums got = sums_of(program);
   EXPECT_NEAR(got.feed_mm, feed_mm, 1e-3 * feed_mm);
   EXPECT_NEAR(got.time_s, 60.0 * feed_mm / feed_mm_per_min, 0.01 * got.time_s);
 }
@@ -125,7 +112,7 @@ TEST(AptArcs, Creo) {
 // Autodesk: the angle tells the sense where the axis does not; ISO: counterclockwise.
 TEST(AptArcs, Movarc) {
   const std::string head = "UNITS/MM\nRAPID\nGOTO/10, 0, 0\nFEDRAT/300, MMPM\n";
-  const auto arc = [&](const std::string& text) { return sums(read(head + text)).feed_mm; };
+  const auto arc = [&](const std::string& text) { return sums_of(read(head + text)).feed_mm; };
   EXPECT_NEAR(arc("MOVARC/0, 0, 0, 0, 0, 1, 10, ANGLE, 90\nGOTO/0, 10, 0\n"), 5.0 * pi, 0.01);
   EXPECT_NEAR(arc("MOVARC/0, 0, 0, 0, 0, 1, 10, ANGLE, 270\nGOTO/0, 10, 0\n"), 15.0 * pi, 0.03);
   EXPECT_NEAR(arc("MOVARC/0, 0, 0, 0, 0, -1, 10, ANGLE, 90\nGOTO/0, 10, 0\n"), 5.0 * pi, 0.01);

@@ -18,46 +18,26 @@
 namespace robomill::program {
 namespace gcode_corners_test {
 
+using test_support::expect_at;
+using test_support::sums_of;
+
 Program read(const std::string& text) {
   return test_support::read_text<GcodeReader>(text);
 }
 
 void expect_rejected(const std::string& text, const std::string& words) {
-  std::string said;
-  try {
-    static_cast<void>(read(text));
-  } catch (const InvalidInput& error) {
-    said = error.what();
-  }
+  const std::string said = test::rejection([&] { static_cast<void>(read(text)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
-}
-
-struct Sums {
-  double way_mm = 0.0, time_s = 0.0;
-};
-Sums sums_of(const Program& program) {
-  Sums out;
-  Eigen::Vector3d from = program.start.tip_m;
-  for (const Block& block : program.blocks) {
-    out.way_mm += (block.end.tip_m - from).norm() / units::mm;
-    out.time_s += block.duration_s;
-    from = block.end.tip_m;
-  }
-  return out;
-}
-
-void expect_at(const Pose& pose, double x_mm, double y_mm, double z_mm) {
-  EXPECT_LT((pose.tip_m - units::mm * Eigen::Vector3d(x_mm, y_mm, z_mm)).norm(), 1e-9) << pose.tip_m.transpose();
 }
 
 TEST(GcodeCorners, ARightAngleIsRounded) {
   const Program program = read("G0 X0 Y0 Z0\nG1 X50 ,R5 F600\nY40\nX0\nM30\n");
   // 45 + a quarter of a circle of 5 mm + 35 + 50
   const double arc_mm = 0.5 * std::numbers::pi * 5.0;
-  EXPECT_NEAR(sums_of(program).way_mm, 45.0 + arc_mm + 35.0 + 50.0, 1e-3 * arc_mm);
+  EXPECT_NEAR(sums_of(program).way_mm(), 45.0 + arc_mm + 35.0 + 50.0, 1e-3 * arc_mm);
   EXPECT_NEAR(sums_of(program).time_s, (45.0 + arc_mm + 35.0 + 50.0) / 10.0, 1e-9);
-  expect_at(program.blocks.front().end, 45, 0, 0);
-  expect_at(program.blocks[program.blocks.size() - 2].end, 50, 40, 0);
+  expect_at(program.blocks.front().end, {45, 0, 0});
+  expect_at(program.blocks[program.blocks.size() - 2].end, {50, 40, 0});
   for (const Block& block : program.blocks) {
     EXPECT_EQ(block.line, block.end.tip_m.y() < 5.0001e-3 ? 2U : block.end.tip_m.x() > 0.0 ? 3U : 4U);
     if (block.line != 2 || block.end.tip_m.x() < 45.0001e-3) continue;
@@ -70,18 +50,18 @@ TEST(GcodeCorners, ARightAngleIsRounded) {
 TEST(GcodeCorners, ARightAngleIsChamfered) {
   const Program program = read("G20\nG0 X0 Y0 Z0\nG1 X2, C0.5 F10\nY-2\n");
   ASSERT_EQ(program.blocks.size(), 3U);
-  expect_at(program.blocks[0].end, 38.1, 0, 0);
-  expect_at(program.blocks[1].end, 50.8, -12.7, 0);
-  expect_at(program.blocks[2].end, 50.8, -50.8, 0);
+  expect_at(program.blocks[0].end, {38.1, 0, 0});
+  expect_at(program.blocks[1].end, {50.8, -12.7, 0});
+  expect_at(program.blocks[2].end, {50.8, -50.8, 0});
   EXPECT_NEAR(program.blocks[1].duration_s, 6.0 * 0.5 * std::numbers::sqrt2, 1e-12);
 }
 
 // Steps count from the corner that the program says, which the tool does not come to.
 TEST(GcodeCorners, StepsAndSeveralCornersInTurn) {
   const Program steps = read("G0 X0 Y0 Z0\nG91 G1 X10 ,C2 F60\nY10 ,R3\nX-10 ,C1\n(a comment)\n\nY-9\nM30\n");
-  expect_at(steps.blocks.back().end, 0, 1, 0);
+  expect_at(steps.blocks.back().end, {0, 1, 0});
   const double way = 8.0 + 2.0 * std::numbers::sqrt2 + 5.0 + 1.5 * std::numbers::pi + 6.0 + std::numbers::sqrt2 + 8.0;
-  EXPECT_NEAR(sums_of(steps).way_mm, way, 1e-3 * way);
+  EXPECT_NEAR(sums_of(steps).way_mm(), way, 1e-3 * way);
   EXPECT_NEAR(sums_of(steps).time_s, way, 1e-9 * way);
   const Program fits = read("G0 X0 Y0 Z0\nG1 X10 ,C5 F60\nY10 ,C5\nX0\n");
   EXPECT_EQ(fits.blocks.size(), 4U) << "nothing is left of the middle move but its two chamfers";
@@ -163,7 +143,7 @@ TEST(GcodeCorners, ARoundedCornerTouchesBothMoves) {
                                              corner.x(), corner.y(), r, end.x(), end.y()));
     const double way = 5.0 + r * std::abs(turn) + 7.0;
     EXPECT_NEAR(sums_of(program).time_s, way, 1e-6 * way);
-    EXPECT_NEAR(sums_of(program).way_mm, way, 1e-3 * way);
+    EXPECT_NEAR(sums_of(program).way_mm(), way, 1e-3 * way);
     const double side = turn > 0.0 ? 1.0 : -1.0;
     const Eigen::Vector3d center = 5.0 * direction(first) + side * r * direction(first + 0.5 * std::numbers::pi);
     for (std::size_t i = 0; i + 1 < program.blocks.size(); ++i) {

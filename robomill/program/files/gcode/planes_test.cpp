@@ -19,23 +19,15 @@ namespace robomill::program {
 namespace gcode_planes_test {
 
 using Eigen::Vector3d;
+using test_support::expect_at;
 
 Program read(const std::string& text, std::optional<Machine> machine = {}) {
   return test_support::read_text<GcodeReader>(text, {.machine = machine});
 }
 
 void expect_rejected(const std::string& text, const std::string& words) {
-  std::string said;
-  try {
-    static_cast<void>(read(text));
-  } catch (const InvalidInput& error) {
-    said = error.what();
-  }
+  const std::string said = test::rejection([&] { static_cast<void>(read(text)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
-}
-
-void expect_at(const Pose& pose, const Vector3d& mm, double tolerance_m = 1e-9) {
-  EXPECT_LT((pose.tip_m - units::mm * mm).norm(), tolerance_m) << pose.tip_m.transpose() / units::mm;
 }
 
 double time_of(const Program& program) {
