@@ -360,6 +360,14 @@ TEST_F(App, NoByteOfAFileControlsTheTerminal) {
   }
 }
 
+TEST_F(App, LinesOfAMessageStandBelowEachOther) {
+  write("hit.csv", "time_s,Hammer (V),acc x (V)\n0,0,0\n0.001,1,2\n0.002,0,1\n");
+  const Ended ended = robomill("frf hit.csv -o tip.uff");
+  EXPECT_EQ(ended.exit, 1);
+  EXPECT_NE(ended.err.find("run robomill frf hits.toml:\n  [acquisition]\n  sample_rate_hz"), std::string::npos)
+      << ended.err;
+}
+
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]\noutput = \"map\"");
   const Ended run = shell("env --default-signal=INT timeout --foreground --signal=INT 1 '" ROBOMILL_PROGRAM

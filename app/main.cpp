@@ -43,7 +43,7 @@ Exit run(const jobs::VerbJob& job, const Common& common, Progress& progress) {
 }
 
 int report_error(const char* text, int exit) {
-  std::fprintf(stderr, "robomill: %s\n", printable(text).c_str());
+  std::fprintf(stderr, "robomill: %s\n", printable_lines(text).c_str());
   return exit;
 }
 

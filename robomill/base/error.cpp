@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -13,18 +12,7 @@
 namespace robomill {
 namespace {
 
-/// Names and values come from files. Line ends before an indent are ours: lines to copy, reasons below each other.
-std::string printable_lines(const std::string& text) {
-  std::string out;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find("\n  ", at), text.size());
-    out += printable(std::string_view(text).substr(at, end - at));
-    if (end < text.size()) out += '\n';
-    at = end + 1;
-  }
-  return out;
-}
-
+// Names and values come from files. Line ends before an indent are ours.
 std::string compose(const InvalidInput::Parts& p) {
   std::string text;
   if (!p.where.empty()) text += p.where + ": ";

@@ -9,4 +9,7 @@ namespace robomill {
 /// What comes out comes out again unchanged.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// The same, with line ends before two blanks kept: lines that a message has below each other, to be copied.
+[[nodiscard]] std::string printable_lines(std::string_view text);
+
 }  // namespace robomill

@@ -17,6 +17,8 @@ TEST(Printable, LeavesTextAlone) {
 TEST(Printable, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(printable("\x1b[2J"), "\\x1b[2J");
   EXPECT_EQ(printable("a\r\n\tb\x7f"), "a\\x0d\\n\\tb\\x7f");
+  EXPECT_EQ(printable_lines("a\nb\n  c\n\n  d\r"), "a\\nb\n  c\\n\n  d\\x0d");
+  EXPECT_EQ(printable_lines(""), "");
   EXPECT_EQ(printable(std::string("\0", 1)), "\\x00");
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J"),

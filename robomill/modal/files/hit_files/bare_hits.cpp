@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/records/records.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/toml/edit.hpp"
 #include "robomill/modal/files/found_hits.hpp"
@@ -159,6 +160,8 @@ HitsFile read_bare_hits(const std::vector<fs::path>& records) {
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   for (const fs::path& record : records) {
     if (std::ranges::count(records, record) > 1) throw InvalidInput(record.string(), "is given twice");
+    // No lines of a hits.toml help a file that is not read.
+    if (!io::unread_record(record).what.empty()) static_cast<void>(io::read_record(record));
   }
   const FoundHits found = find_hits(records, folder);
   if (!found.left_out.empty()) {

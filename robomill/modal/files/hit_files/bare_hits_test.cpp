@@ -139,6 +139,12 @@ TEST_F(BareHitsTest, SaysWhatToAdd) {
        {"no column looks like a hammer's force", "\n  force = …  # column", "file = \"hit.csv\""});
   EXPECT_NE(test::rejection([&] { static_cast<void>(read_bare_hits({folder_.at("none.csv")})); }).find("none.csv"),
             std::string::npos);
+  EXPECT_EQ(
+      test::rejection([&] {
+        static_cast<void>(read_bare_hits({folder_.file("hit.xlsx", "PK")}));
+      }).substr(folder_.at("hit.xlsx").string().size()),
+      ": is a spreadsheet, which is not read yet. Open it and save the sheet as CSV, with one line of names above "
+      "the numbers and nothing below them");
   const auto path = folder_.at("hit.csv");
   EXPECT_NE(test::rejection([&] {
               static_cast<void>(read_bare_hits({path, path}));
