@@ -27,6 +27,7 @@ namespace robomill::program {
 namespace {
 
 constexpr std::size_t kept_remarks = 500;
+constexpr std::size_t most_listed_parts = 30;
 
 constexpr Name<Machine> machine_names[] = {{"xyzac-trt", Machine::xyzac_trt},
                                            {"xyzbc-trt", Machine::xyzbc_trt},
@@ -210,14 +211,18 @@ class Walk {
     return listed;
   }
 
-  /// The error with each tool's lines, moves and time in the place of the parts.
+  /// The error with the choice that reads a part, and below each other each part's lines, moves and time.
   [[nodiscard]] InvalidInput::Parts with_contents(const SeveralTools& error) const {
     const std::vector<NumberedPart> tools = parts_of(error);
-    std::vector<std::string> listed;
+    std::string listed;
     std::optional<ToolChoice> first;
     bool first_reads = false;
-    for (const NumberedPart& one : tools) {
-      if (listed.size() == most_named_tools) break;
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+      if (i == most_listed_parts) {
+        listed += fmt::format("\n  and {} more", tools.size() - i);
+        break;
+      }
+      const NumberedPart& one = tools[i];
       const ToolPart& part = one.part;
       const ToolChoice choice = choice_of(one);
       const bool can_choose = part.can_be_chosen();
@@ -225,11 +230,10 @@ class Walk {
       const bool reads = !contents.starts_with(", cannot");
       if (can_choose && (!first || (reads && !first_reads))) first = choice;
       first_reads = first_reads || (can_choose && reads);
-      listed.push_back(fmt::format("{} (line {}, {} line{}{})", one.count > 1 ? text_of(choice) : part.name, part.line,
-                                   part.lines, part.lines == 1 ? "" : "s", contents));
+      listed += fmt::format("\n  {}: line {}, {} line{}{}", one.count > 1 ? text_of(choice) : part.name, part.line,
+                            part.lines, part.lines == 1 ? "" : "s", contents);
     }
     InvalidInput::Parts parts = error.bare();
-    parts.rule += "; the program has " + list_text(listed, tools.size() - listed.size());
     if (first) {
       const std::string tool = first->number ? fmt::format("program.tool = {}", *first->number)
                                              : fmt::format("program.tool_name = \"{}\"", first->name);
@@ -237,6 +241,7 @@ class Walk {
                                              *first->part)
                                : fmt::format("{} in the cell reads that tool's part alone", tool);
     }
+    parts.hint += ". The program has:" + listed;
     return parts;
   }
 

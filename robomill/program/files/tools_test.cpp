@@ -83,13 +83,14 @@ TEST(Tools, WithoutAChoiceTheErrorListsThem) {
   EXPECT_EQ(
       said_of(two, {}),
       "part.nc:8: M6: mounts another tool than the one that has cut, whose length is not known here, and line 12 "
-      "cuts; the program has T4 (line 2, 6 lines, 3 moves, 4.2 s at feed) and T6 (line 8, 8 lines, 3 moves, 2 s at "
-      "feed). program.tool = 4 in the cell reads that tool's part alone");
+      "cuts. program.tool = 4 in the cell reads that tool's part alone. The program has:\n  T4: line 2, 6 lines, 3 "
+      "moves, 4.2 s at feed\n  T6: line 8, 8 lines, 3 moves, 2 s at feed");
   std::string plunges = two;
   plunges.erase(plunges.find("Z3\n"), 3);
-  expect_rejected(plunges, {},
-                  "T6 (line 8, 7 lines, cannot be read alone: line 11: Z is not known where this line cuts: M6 in line "
-                  "8 left the positions of the program)");
+  expect_rejected(
+      plunges, {},
+      "\n  T6: line 8, 7 lines, cannot be read alone: line 11: Z is not known where this line cuts: M6 in line "
+      "8 left the positions of the program");
   expect_rejected(plunges, 6, "part.nc:11: Z: is not known where this line cuts: M6 in line 8");
 }
 
@@ -133,10 +134,11 @@ TEST(Tools, OneThatComesBackIsReadByItsParts) {
                   "missing between the two parts. program.tool_part = 1 in the cell reads the part before it alone, 2 "
                   "the one that begins here");
   EXPECT_EQ(read(back, 6).blocks.size(), 1U);
-  expect_rejected(back, {},
-                  "the program has part 1 of T4 (line 1, 3 lines, 1 move, 1 s at feed), T6 (line 4, 3 lines, 1 move, 1 "
-                  "s at feed) and part 2 of T4 (line 7, 4 lines, 1 move, 2 s at feed). program.tool = 4 and "
-                  "program.tool_part = 1 in the cell read that part alone");
+  expect_rejected(
+      back, {},
+      "program.tool = 4 and program.tool_part = 1 in the cell read that part alone. The program has:\n  part "
+      "1 of T4: line 1, 3 lines, 1 move, 1 s at feed\n  T6: line 4, 3 lines, 1 move, 1 s at feed\n  part 2 of "
+      "T4: line 7, 4 lines, 1 move, 2 s at feed");
   const Program first = read(back, {4, 1});
   ASSERT_EQ(first.blocks.size(), 1U);
   expect_at(first.blocks[0].end, {1, 0, 0});
@@ -181,10 +183,10 @@ TEST(Tools, TAloneChangesThemWhereNoM6Does) {
   EXPECT_NEAR(sums_of(program).time_s, 4.0, 1e-12);
   ASSERT_EQ(program.assumed.size(), 1U);
   EXPECT_EQ(program.assumed[0].what, "T without an M6");
-  expect_rejected(
-      named, {},
-      "part.nc:5: T2: names another tool than the one that has cut, in a program without M6, and line 7 "
-      "cuts; the program has T1 (line 1, 4 lines, 1 move, 1 s at feed) and T2 (line 5, 4 lines, 1 move, 4 s");
+  expect_rejected(named, {},
+                  "part.nc:5: T2: names another tool than the one that has cut, in a program without M6, and line 7 "
+                  "cuts. program.tool = 1 in the cell reads that tool's part alone. The program has:\n  T1: line 1, 4 "
+                  "lines, 1 move, 1 s at feed\n  T2: line 5, 4 lines, 1 move, 4 s");
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nG1 X1 F60\nT3\nX2\nM30\n", {}), "") << "made ready";
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nG1 X1 F60\nT3\nX2\nM30\n", 1), "");
   EXPECT_EQ(said_of("T1\nG0 X0 Y0 Z0\nG1 X1 F60\nM30\n", {}), "");
@@ -205,10 +207,10 @@ TEST(Tools, OfApt) {
   expect_rejected(
       file, {},
       "part.apt:11: LOAD: mounts another tool than the one that has cut, whose length is not known here, and "
-      "line 14 moves it; the program has",
+      "line 14 moves it. program.tool = 1 in the cell reads that tool's part alone. The program has:",
       "part.apt");
   expect_rejected(file, {},
-                  "T1 (line 4, 7 lines, 2 moves, 12 s at feed) and T2 (line 11, 8 lines, 2 moves, 6.3 s at feed)",
+                  "\n  T1: line 4, 7 lines, 2 moves, 12 s at feed\n  T2: line 11, 8 lines, 2 moves, 6.3 s at feed",
                   "part.apt");
   expect_rejected(file, 3, "program.tool = 3; is no tool of this program: it has T1 (line 4) and T2 (line 11)",
                   "part.apt");
@@ -238,10 +240,10 @@ TEST(Tools, OfNx) {
   const std::string one = "TOOL PATH/A,TOOL,MILL\nLOAD/TOOL,4\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\n";
   expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {},
                   "part.cls:6: TOOL PATH: mounts another tool than the one that has cut", "part.cls");
-  expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {}, "the program has T4 (line 2, 4 lines, 1 move",
+  expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {}, "The program has:\n  T4: line 2, 4 lines, 1 move",
                   "part.cls");
   const std::string two = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
-  expect_rejected(two, {}, "T4 (line 2, 4 lines, 1 move, 1 s at feed) and T5 (line 7,", "part.cls");
+  expect_rejected(two, {}, "\n  T4: line 2, 4 lines, 1 move, 1 s at feed\n  T5: line 7,", "part.cls");
   EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm(), 7.0, 1e-9);
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nGOHOME\nLOADTL/2\nGOTO/5,5,5\nGOTO/6,5,5\n", {},
                   "part.cls:6: LOADTL: mounts another tool", "part.cls");
@@ -255,11 +257,12 @@ TEST(Tools, WithoutNumbersAreChosenByTheirNames) {
   const std::string text =
       "TOOL PATH/A,TOOL,MILL\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nTOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\nGOTO/9,0,0\n"
       "TOOL PATH/C,TOOL,MILL\nGOTO/0,0,0\nGOTO/3,0,0\n";
-  expect_rejected(text, {},
-                  "the program has part 1 of MILL (line 1, 4 lines, 1 move, 1 s at feed), DRILL (line 5, 3 lines, 1 "
-                  "move, 7 s at feed) and part 2 of MILL (line 8, 3 lines, 1 move, 3 s at feed). program.tool_name = "
-                  "\"MILL\" and program.tool_part = 1 in the cell read that part alone",
-                  "part.cls");
+  expect_rejected(
+      text, {},
+      "program.tool_name = \"MILL\" and program.tool_part = 1 in the cell read that part alone. The program "
+      "has:\n  part 1 of MILL: line 1, 4 lines, 1 move, 1 s at feed\n  DRILL: line 5, 3 lines, 1 move, 7 s at "
+      "feed\n  part 2 of MILL: line 8, 3 lines, 1 move, 3 s at feed",
+      "part.cls");
   EXPECT_NEAR(sums_of(read(text, "DRILL", "part.cls")).way_mm(), 7.0, 1e-9);
   EXPECT_NEAR(sums_of(read(text, {"MILL", 2}, "part.cls")).way_mm(), 3.0, 1e-9);
   expect_rejected(text, "SAW",
@@ -289,7 +292,7 @@ TEST(Tools, CutsOfOthersBetweenArcsAreNotMissed) {
 
 TEST(Tools, AreListedFromWithinSubprograms) {
   expect_rejected("T1 M6\nG0 X0 Y0 Z5\nF100\nM98 P1\nT2 M6\nG0 X0 Y0 Z5\nM98 P1\nM30\nO1\nG1 Z-1\nG0 Z5\nM99\n", {},
-                  "the program has T1");
+                  "The program has:\n  T1: line 1");
 }
 
 Rewritten rewrite(const std::string& text, const Choice& tool, double speed, double feed,
