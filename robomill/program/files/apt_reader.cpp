@@ -224,6 +224,7 @@ bool AptReader::pass_over() {
     return true;
   }
   if (word_ == "RETRCT" && !fields_.empty()) return true;
+  if (word_ == "GOHOME" && gives_home()) return false;  // its axis goes on, and a RAPID before it ends
   const std::string_view first = word_.substr(0, word_.find(','));
   if (std::ranges::find(order_of_statements, first) != order_of_statements.end()) return false;
   const auto* const found = std::ranges::find(moving, first, &Moving::word);

@@ -58,6 +58,8 @@ class AptReader final : public ProgramReader {
   bool advance() override;
   /// Whether a statement moves a tool that is not chosen, and so counts for nothing.
   bool pass_over();
+  /// The chosen tool is mounted again behind moves of others: it may make no move more, and stands nowhere.
+  [[nodiscard]] bool is_over() const { return tools_.between() != nullptr; }
   void at_end() override;
 
   void split(std::string_view statement);
@@ -138,6 +140,8 @@ class AptReader final : public ProgramReader {
   void take_clearance();
   void take_retract();
   void take_home();
+  /// Whether GOHOME says where it is.
+  [[nodiscard]] bool gives_home() const;
   void lose();
   /// A rapid after a position that was not known: up, across, down.
   void come_back(const Pose& end);

@@ -89,10 +89,10 @@ class Hdf5TreeReader {
   }
 
   void read_object(hid_t object, std::size_t parent, const std::string& name, const std::string& key, int depth) {
-    if (H5Iget_type(object) == H5I_DATASET) {
+    if (const char* const fault = of_matlab_ ? matlab_fault(object) : nullptr; fault != nullptr) {
+      builder_.add_fault(parent, name, key, fault);
+    } else if (H5Iget_type(object) == H5I_DATASET) {
       read_set(object, parent, name, key, depth);
-    } else if (of_matlab_ && H5Iget_type(object) == H5I_GROUP && H5Aexists(object, "MATLAB_sparse") > 0) {
-      add_fault(parent, name, key, "a sparse matrix");
     } else if (H5Iget_type(object) == H5I_GROUP) {
       const std::size_t place = builder_.add_group(parent, name, key);
       add_attributes(object, place, name);
@@ -114,8 +114,6 @@ class Hdf5TreeReader {
       case H5T_FLOAT:
         if (matlab_class == "char") {
           builder_.add_texts(parent, name, key, {letters_of(set, sides)});
-        } else if (of_matlab_ && H5Aexists(set, "MATLAB_object_decode") > 0) {
-          add_fault(parent, name, key, "an object of MATLAB");
         } else {
           read_numbers(set, nullptr, parent, name, key, sides);
         }
@@ -130,17 +128,22 @@ class Hdf5TreeReader {
         if (of_matlab_) read_references(set, parent, name, key, sides, matlab_class == "cell", depth);
         break;
       default:
-        add_fault(parent, name, key, other_type);
+        builder_.add_fault(parent, name, key, other_type);
     }
   }
 
-  void add_fault(std::size_t parent, const std::string& name, const std::string& key, const char* fault) {
-    builder_.add({.parent = parent, .kind = FileNode::Kind::numbers, .name = name, .key = key, .fault = fault});
+  /// Why a group or data set of MATLAB is neither a struct nor numbers; null: it may be.
+  [[nodiscard]] static const char* matlab_fault(hid_t object) {
+    const H5I_type_t type = H5Iget_type(object);
+    if (type != H5I_GROUP && type != H5I_DATASET) return nullptr;
+    if (H5Aexists(object, "MATLAB_sparse") > 0) return sparse_matrix;
+    if (class_of(object) == "function_handle") return function_handle;
+    return H5Aexists(object, "MATLAB_object_decode") > 0 ? matlab_object : nullptr;
   }
 
-  [[nodiscard]] static std::string class_of(hid_t set) {
-    if (H5Aexists(set, "MATLAB_class") <= 0) return {};
-    const Hdf5Id attribute(H5Aopen(set, "MATLAB_class", H5P_DEFAULT), H5Aclose);
+  [[nodiscard]] static std::string class_of(hid_t object) {
+    if (H5Aexists(object, "MATLAB_class") <= 0) return {};
+    const Hdf5Id attribute(H5Aopen(object, "MATLAB_class", H5P_DEFAULT), H5Aclose);
     const Hdf5Id stored(H5Aget_type(attribute.get()), H5Tclose);
     std::array<char, 32> name = {};
     if (H5Tget_class(stored.get()) != H5T_STRING || H5Tis_variable_str(stored.get()) != 0 ||
@@ -198,7 +201,7 @@ class Hdf5TreeReader {
                             ((H5Tget_member_index(type, "real") >= 0 && H5Tget_member_index(type, "imag") >= 0) ||
                              (H5Tget_member_index(type, "r") >= 0 && H5Tget_member_index(type, "i") >= 0));
     if (is_complex) {
-      add_fault(parent, name, key, "complex numbers");
+      builder_.add_fault(parent, name, key, "complex numbers");
       return;
     }
     const std::size_t place = builder_.add_group(parent, name, key);
@@ -212,7 +215,7 @@ class Hdf5TreeReader {
       if (is_plain_number(stored.get())) {
         read_numbers(set, field.c_str(), place, path_of(name, field), field, sides);
       } else {
-        add_fault(place, path_of(name, field), field, other_type);
+        builder_.add_fault(place, path_of(name, field), field, other_type);
       }
     }
   }

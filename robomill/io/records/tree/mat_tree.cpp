@@ -56,6 +56,21 @@ ValueAt value_of(matio_classes type) {
   }
 }
 
+/// Why a variable is neither numbers, text, a struct nor a cell; null: it may be.
+const char* other_kind(const matvar_t& variable) {
+  switch (variable.class_type) {
+    case MAT_C_SPARSE:
+      return sparse_matrix;
+    case MAT_C_FUNCTION:
+      return function_handle;
+    case MAT_C_OBJECT:
+    case MAT_C_OPAQUE:
+      return matlab_object;
+    default:
+      return nullptr;
+  }
+}
+
 std::vector<std::uint64_t> sides_of(const matvar_t& variable) {
   if (variable.dims == nullptr || variable.rank < 1) return {0};
   return {variable.dims, variable.dims + variable.rank};
@@ -83,7 +98,10 @@ class MatTreeReader {
                            "Is the file damaged, or does it hold objects? Save the numbers alone");
       }
       if (!variable) break;
-      if (variable->name == nullptr) continue;
+      if (variable->name == nullptr) {  // of objects the library reads none
+        if (const char* const other = other_kind(*variable); other != nullptr) builder_.add_fault(0, "", "", other);
+        continue;
+      }
       const std::string name = variable->name;
       if (!is_wanted(*variable, name)) continue;
       if (Mat_VarReadDataAll(mat, variable.get()) != 0) {
@@ -98,11 +116,12 @@ class MatTreeReader {
   bool is_wanted(const matvar_t& variable, const std::string& name) {
     if (variable.class_type == MAT_C_STRUCT || variable.class_type == MAT_C_CELL) return true;
     if (variable.class_type == MAT_C_CHAR) return elements_of(variable) <= longest_mat_text;
+    if (const char* const other = other_kind(variable); other != nullptr) builder_.add_fault(0, name, name, other);
     const std::size_t width = mat_number_bytes(variable.class_type);
     if (width == 0 || variable.isLogical != 0) return false;
     std::uint64_t rows = 0, columns = 0;
     if (!squeezed(sides_of(variable), rows, columns)) {
-      add_fault(0, name, name, fmt::format("of {} dimensions", variable.rank));
+      builder_.add_fault(0, name, name, fmt::format("of {} dimensions", variable.rank));
       return false;
     }
     if (rows == 0 || columns == 0) return false;
@@ -123,8 +142,11 @@ class MatTreeReader {
         add_text(variable, parent, name, key);
         break;
       default:
-        if (mat_number_bytes(variable.class_type) > 0 && variable.isLogical == 0)
+        if (const char* const other = other_kind(variable); other != nullptr) {
+          builder_.add_fault(parent, name, key, other);
+        } else if (mat_number_bytes(variable.class_type) > 0 && variable.isLogical == 0) {
           add_numbers(variable, parent, name, key);
+        }
     }
   }
 
@@ -192,11 +214,6 @@ class MatTreeReader {
     }
   }
 
-  void add_fault(std::size_t parent, const std::string& name, const std::string& key, std::string fault) {
-    builder_.add(
-        {.parent = parent, .kind = FileNode::Kind::numbers, .name = name, .key = key, .fault = std::move(fault)});
-  }
-
   void add_numbers(const matvar_t& variable, std::size_t parent, const std::string& name, const std::string& key) {
     std::uint64_t rows = 0, columns = 0;
     std::string fault;
@@ -204,7 +221,7 @@ class MatTreeReader {
     if (fault.empty() && (rows == 0 || columns == 0)) return;
     if (variable.isComplex != 0) fault = "complex numbers";
     if (fault.empty()) fault = TreeBuilder::lie_fault(rows, columns);
-    if (!fault.empty()) return add_fault(parent, name, key, std::move(fault));
+    if (!fault.empty()) return builder_.add_fault(parent, name, key, std::move(fault));
     builder_.require_room(name, rows, columns);
     if (variable.data == nullptr || variable.nbytes / mat_number_bytes(variable.class_type) / columns < rows) {
       throw InvalidInput(file_, fmt::format("variable {} cannot be read", name));

@@ -36,6 +36,12 @@ void TreeBuilder::add_texts(std::size_t parent, std::string name, std::string ke
   add(std::move(node));
 }
 
+void TreeBuilder::add_fault(std::size_t parent, std::string name, std::string key, std::string fault) {
+  FileNode node{.parent = parent, .kind = FileNode::Kind::numbers, .name = std::move(name), .key = std::move(key)};
+  node.fault = std::move(fault);
+  add(std::move(node));
+}
+
 void TreeBuilder::require_room(const std::string& name, std::uint64_t rows, std::uint64_t columns) {
   if (columns == 0 || rows <= left_ / columns) {
     left_ -= rows * columns;

@@ -13,6 +13,10 @@ namespace robomill::io {
 /// Values that a file of so many bytes may be unpacked to.
 [[nodiscard]] std::uint64_t most_values_of(std::uint64_t file_bytes);
 
+/// What of MATLAB is no signal, as messages have it.
+inline constexpr const char *sparse_matrix = "a sparse matrix", *function_handle = "a function handle",
+                            *matlab_object = "an object of MATLAB";
+
 /// A tree that is built of what a library reads.
 class TreeBuilder {
  public:
@@ -22,6 +26,8 @@ class TreeBuilder {
 
   std::size_t add_group(std::size_t parent, std::string name, std::string key);
   void add_texts(std::size_t parent, std::string name, std::string key, std::vector<std::string> texts);
+  /// What can be no channel, and why.
+  void add_fault(std::size_t parent, std::string name, std::string key, std::string fault);
   /// @throws InvalidInput if there are more nodes, or values, than a file of its size may have
   std::size_t add(FileNode node);
   /// Before memory for so many is asked for. @throws InvalidInput

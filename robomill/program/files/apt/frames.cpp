@@ -169,18 +169,27 @@ void AptReader::take_retract() {
   move(Block::Kind::rapid, end, 0.0);
 }
 
+bool AptReader::gives_home() const {
+  const std::size_t count = all_numbers().size();
+  return count == 3 || count == 6;
+}
+
 void AptReader::take_home() {
-  const std::vector<double> numbers = all_numbers();
-  if (numbers.size() != 3 && numbers.size() != 6) {
+  if (!gives_home()) {
     skip_statement();
     if (start_ && lost_line_ == 0) lose();
     return;
   }
   take_numbers(3, 6);
   rapid_ = false;
-  made_ = Made::moves;
   begin_part_move();
-  go_straight(pose_of_numbers(), true);
+  const Pose end = pose_of_numbers();
+  if (passes()) {
+    begin_at(end);
+    return;
+  }
+  made_ = Made::moves;
+  go_straight(end, true);
 }
 
 void AptReader::lose() {

@@ -174,7 +174,7 @@ void AptReader::begin_cutting() {
 }
 
 void AptReader::take_stop() {
-  if (!start_) {
+  if (!start_ || is_over()) {
     skip_statement();
     return;
   }
@@ -184,7 +184,7 @@ void AptReader::take_stop() {
 void AptReader::take_delay() {
   const bool seconds =
       fields_.size() == 1 && !fields_[0].empty() && !(fields_[0].front() >= 'A' && fields_[0].front() <= 'Z');
-  if (!seconds || !start_) {
+  if (!seconds || !start_ || is_over()) {
     skip_statement();
     return;
   }
