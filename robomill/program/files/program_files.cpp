@@ -140,12 +140,12 @@ class Walk {
       remarks_.repeat(called.again);
       reader_->go_on_at(called.number);
       reader_->take(called.text, called.ahead);
-      follow_calls();
+      calls_.follow(*gcode_, lines_.number() + 1);
     } else if (!reader_->ended() && lines_.next(line)) {
       remarks_.repeat(lines_.number() <= farthest_);
       farthest_ = std::max(farthest_, lines_.number());
       reader_->take(line, lines_.ahead());
-      if (gcode_ != nullptr) follow_calls();
+      if (gcode_ != nullptr) calls_.follow(*gcode_, lines_.number() + 1);
     } else {
       finish();
       finished_ = true;
@@ -243,17 +243,6 @@ class Walk {
     }
     parts.hint += ". The program has:" + listed;
     return parts;
-  }
-
-  void follow_calls() {
-    const std::size_t depth = calls_.depth();
-    const bool returns = gcode_->take_return();
-    const std::optional<GcodeCall> call = gcode_->take_call();
-    if (!returns && !call) return;
-    if (returns && depth > 0) calls_.give_back();
-    if (call) calls_.call(*call);
-    gcode_->set_depth(calls_.depth());
-    if (calls_.depth() == 0) reader_->go_on_at(lines_.number() + 1);
   }
 
   std::function<ProgramLines()> open_;

@@ -55,7 +55,7 @@ void ProgramLines::fill() {
   end_ += static_cast<std::size_t>(in_->gcount());
   if (in_->bad()) throw InvalidInput(InvalidInput::Parts{.where = name_, .rule = "cannot be read to its end"});
   whole_ = !*in_;
-  if (first && std::string_view(buffer_.data(), end_).starts_with("\xEF\xBB\xBF")) begin_ = 3;
+  if (first && std::string_view(buffer_.data(), end_).starts_with(byte_order_mark)) begin_ = byte_order_mark.size();
 }
 
 bool ProgramLines::next(std::string_view& line) {

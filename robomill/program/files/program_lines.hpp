@@ -9,6 +9,9 @@
 
 namespace robomill::program {
 
+/// UTF-8's: before the first line of some texts.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 /// How a text's first line ends: with LF, CR LF, or CR alone.
 struct LineEnd {
   std::size_t at = 0;     ///< where its end begins: behind the text where there is none

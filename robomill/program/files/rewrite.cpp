@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/program/files/rewrite/calls.hpp"
 #include "robomill/program/files/rewrite/rewriter.hpp"
 
 namespace robomill::program {
@@ -107,7 +109,7 @@ void verify(const RewriteJob& job, const std::filesystem::path& name, const Rewr
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     parts.rule = "could not be rewritten: read again, it " + parts.rule;
-    throw InvalidInput(std::move(parts));
+    throw at_origin(InvalidInput(std::move(parts)), job.file, result.origins);
   }
   const auto origin = [&](std::size_t line) { return line <= result.origins.size() ? result.origins[line - 1] : 0; };
   const std::span<const Block> wanted = job.wanted.blocks;
@@ -137,17 +139,11 @@ void verify(const RewriteJob& job, const std::filesystem::path& name, const Rewr
   }
 }
 
-}  // namespace
-
-Rewritten rewrite_program_text(const std::string& text, const std::filesystem::path& name,
-                               const ProgramReading& reading, const Program& as_read, const Program& wanted,
-                               const std::vector<std::string>& header) {
-  reading.validate();
-  const RewriteJob job = {
-      .file = name.string(), .text = text, .reading = reading, .as_read = as_read, .wanted = wanted};
-  check_wanted(job.file, as_read, wanted);
+/// The job's text as it stands.
+Rewritten rewrite_lines(const RewriteJob& job, const std::filesystem::path& name, ProgramFormat format,
+                        const std::vector<std::string>& header) {
   std::unique_ptr<Rewriter> rewriter;
-  switch (reading.format.value_or(program_format_of(name))) {
+  switch (format) {
     case ProgramFormat::gcode:
       rewriter = make_gcode_rewriter(job);
       break;
@@ -162,6 +158,69 @@ Rewritten rewrite_program_text(const std::string& text, const std::filesystem::p
   verify(job, name, result);
   verify_others(job, name, result);
   return std::move(result.rewritten);
+}
+
+/// @param read  the expanded text's
+void check_expanded(const ExpandedCalls& expanded, const std::string& file, const Program& read,
+                    const Program& as_read) {
+  const auto same = [&](const Block& a, const Block& b) {
+    return a.kind == b.kind && expanded.origins[a.line - 1] == b.line && a.end.tip_m == b.end.tip_m &&
+           a.end.axis == b.end.axis && a.duration_s == b.duration_s &&
+           a.spindle_speed_rad_per_s == b.spindle_speed_rad_per_s && a.spindle == b.spindle && a.coolant == b.coolant &&
+           a.operator_stop == b.operator_stop;
+  };
+  const auto fail = [&](std::size_t line) {
+    throw InvalidInput(InvalidInput::Parts{
+        .where = fmt::format("{}:{}", file, line),
+        .field = "as_read",
+        .rule = "is not what this file gives with its calls of subprograms expanded",
+        .hint = "Read the program again, or let the CAM system write the program without subprograms"});
+  };
+  const std::size_t count = std::min(read.blocks.size(), as_read.blocks.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!same(read.blocks[i], as_read.blocks[i])) fail(read.blocks[i].line);
+  }
+  const bool starts = read.start.tip_m == as_read.start.tip_m && read.start.axis == as_read.start.axis;
+  if (read.blocks.size() != as_read.blocks.size() || !starts) fail(1);
+}
+
+/// Every pass of a subprogram has lines of its own, so that each can have its own feeds and speeds.
+Rewritten rewrite_expanded(const ExpandedCalls& expanded, const std::filesystem::path& name,
+                           const ProgramReading& reading, const Program& as_read, Program wanted,
+                           std::vector<std::string> header) {
+  const std::string file = name.string();
+  try {
+    const Program read = read_program_text(expanded.text, name, reading);
+    check_expanded(expanded, file, read, as_read);
+    for (std::size_t i = 0; i < wanted.blocks.size(); ++i) wanted.blocks[i].line = read.blocks[i].line;
+    header.push_back(fmt::format("{} call{} of subprograms {} expanded in place", expanded.passes,
+                                 expanded.passes == 1 ? "" : "s", expanded.passes == 1 ? "is" : "are"));
+    const RewriteJob job = {.file = file, .text = expanded.text, .reading = reading, .as_read = read, .wanted = wanted};
+    Rewritten out = rewrite_lines(job, name, ProgramFormat::gcode, header);
+    const std::size_t first = out.first_changed == 0 ? expanded.first : std::min(out.first_changed, expanded.first);
+    out.first_changed = expanded.origins[first - 1];
+    out.expanded_calls = expanded.passes;
+    return out;
+  } catch (const InvalidInput& error) {
+    throw at_origin(error, file, expanded.origins);
+  }
+}
+
+}  // namespace
+
+Rewritten rewrite_program_text(const std::string& text, const std::filesystem::path& name,
+                               const ProgramReading& reading, const Program& as_read, const Program& wanted,
+                               const std::vector<std::string>& header) {
+  reading.validate();
+  const RewriteJob job = {
+      .file = name.string(), .text = text, .reading = reading, .as_read = as_read, .wanted = wanted};
+  check_wanted(job.file, as_read, wanted);
+  const ProgramFormat format = reading.format.value_or(program_format_of(name));
+  if (format == ProgramFormat::gcode && may_call(text, job.file)) {
+    const ExpandedCalls expanded = expand_calls(text, job.file, reading);
+    if (expanded.passes > 0) return rewrite_expanded(expanded, name, reading, as_read, wanted, header);
+  }
+  return rewrite_lines(job, name, format, header);
 }
 
 Rewritten rewrite_program(const std::filesystem::path& path, const ProgramReading& reading, const Program& as_read,

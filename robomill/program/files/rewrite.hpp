@@ -14,10 +14,11 @@ namespace robomill::program {
 
 /// A program's text with other speeds, feeds, positions or tool axes.
 struct Rewritten {
-  std::string text;               ///< the whole program
-  std::size_t changed_lines = 0;  ///< of the program
-  std::size_t added_lines = 0;    ///< beside the header's
-  std::size_t first_changed = 0;  ///< the program's first line that is changed or preceded by another; 0: none
+  std::string text;                ///< the whole program
+  std::size_t changed_lines = 0;   ///< of the program, with its calls expanded
+  std::size_t added_lines = 0;     ///< … beside the header's
+  std::size_t first_changed = 0;   ///< the program's first line that is changed, preceded by another, or calls; 0: none
+  std::size_t expanded_calls = 0;  ///< of subprograms: a call that repeats counts as often
 };
 
 /// The program with other spindle speeds, feeds, positions and tool axes, in its own dialect; what needs no change
@@ -35,6 +36,11 @@ struct Rewritten {
 /// - A rapid stays one line where its tips run evenly along a line. Its end is the wanted one; between, the axis goes
 /// as
 ///   the machine turns, and the wanted blocks' axes there do not count.
+///
+/// Calls of subprograms are expanded: their lines stand in the place of the call, as often as it runs them, so that
+/// each pass has its own feeds, speeds and positions. Definitions are left out, and so is what stands behind the
+/// program's end. A comment behind those of the header has their number. Blocks of several passes have the same line:
+/// their order counts. The expanded program has at most 64 MB.
 ///
 /// A feed is the wanted way over the wanted time: whoever moves tips and means to keep feeds scales the times by the
 /// ways.

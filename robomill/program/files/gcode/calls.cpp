@@ -131,16 +131,30 @@ void GcodeCalls::call(const GcodeCall& wanted) {
   GcodeCall call = wanted;
   const std::size_t first = place_of(call);
   stack_.push_back({.call = call, .first = first, .at = first, .left = call.repeats - 1});
+  ++passes_;
 }
 
 void GcodeCalls::give_back() {
   Running& running = stack_.back();
   if (running.left > 0) {
     --running.left;
+    ++passes_;
     running.at = running.first;
   } else {
     stack_.pop_back();
   }
+}
+
+bool GcodeCalls::follow(GcodeReader& reader, std::size_t behind) {
+  const std::size_t depth = stack_.size();
+  const bool returns = reader.take_return();
+  const std::optional<GcodeCall> wanted = reader.take_call();
+  if (!returns && !wanted) return false;
+  if (returns && depth > 0) give_back();
+  if (wanted) call(*wanted);
+  reader.set_depth(stack_.size());
+  if (stack_.empty()) reader.go_on_at(behind);
+  return true;
 }
 
 GcodeCalls::Line GcodeCalls::next() {
@@ -166,7 +180,7 @@ GcodeCalls::Line GcodeCalls::next() {
 
 void GcodeCalls::rewind() {
   stack_.clear();
-  carried_out_ = 0;
+  carried_out_ = passes_ = 0;
 }
 
 void GcodeReader::call_program(const Line& line) {

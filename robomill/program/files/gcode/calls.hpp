@@ -11,6 +11,8 @@
 
 namespace robomill::program {
 
+class GcodeReader;
+
 /// A call of a subprogram, as a line says it.
 struct GcodeCall {
   enum class Kind : std::uint8_t {
@@ -40,6 +42,12 @@ class GcodeCalls {
   /// The subprogram has ended: it begins again, or its caller goes on.
   void give_back();
   [[nodiscard]] std::size_t depth() const { return stack_.size(); }
+  /// Carries out what the line that the reader has taken last calls or ends.
+  /// @param behind  the line where the main program goes on
+  /// @return whether it did either. @throws InvalidInput as call
+  bool follow(GcodeReader& reader, std::size_t behind);
+  /// How often subprograms have begun so far.
+  [[nodiscard]] std::size_t passes() const { return passes_; }
 
   struct Line {
     std::string_view text;
@@ -73,7 +81,7 @@ class GcodeCalls {
   std::multimap<std::string, std::size_t, std::less<>> numbers_;  ///< N words
   std::vector<std::size_t> program_begins_;
   std::vector<Running> stack_;
-  std::size_t carried_out_ = 0;
+  std::size_t carried_out_ = 0, passes_ = 0;
 };
 
 }  // namespace robomill::program

@@ -53,6 +53,8 @@ class GcodeReader final : public ProgramReader {
   void set_depth(std::size_t depth) { depth_ = depth; }
   /// What the last line calls.
   [[nodiscard]] std::optional<GcodeCall> take_call() { return std::exchange(call_, std::nullopt); }
+  /// The next line is in the definition of a subprogram, which is not carried out.
+  [[nodiscard]] bool leaves_out_sub() const { return !leaves_out_sub_.empty(); }
   /// Whether the last line ends its subprogram.
   [[nodiscard]] bool take_return() { return std::exchange(returns_, false); }
 

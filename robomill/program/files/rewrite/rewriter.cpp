@@ -16,7 +16,6 @@ namespace robomill::program {
 namespace {
 
 constexpr double one_feed_tolerance = 0.5e-5;  ///< half of what is compared
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 struct TextLine {
   std::string_view text;  ///< without its ending
