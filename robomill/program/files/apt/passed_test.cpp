@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double mm = 1e-3;
 
 Program read(const std::string& text, std::optional<int> tool) {
-  return read_program_text(text, "part.apt", {.tool = tool});
+  return read_program_text(text, "part.apt", {.tool = {.number = tool}});
 }
 
 void expect_rejected(const std::string& text, int tool, const std::string& words) {

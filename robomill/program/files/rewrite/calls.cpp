@@ -53,7 +53,7 @@ class Expansion {
         reader_(file, reading, remarks_),
         calls_(file, [text, &file] { return ProgramLines(file, std::string(text)); }) {
     reader_.allow_calls();
-    if (reading.tool && GcodeReader::changes_tool_by_t(ProgramLines(file, std::string(text)), file)) {
+    if (reading.tool.given() && GcodeReader::changes_tool_by_t(ProgramLines(file, std::string(text)), file)) {
       reader_.set_changes_tool_by_t();
     }
     if (text.starts_with(byte_order_mark)) out_.text = byte_order_mark;

@@ -128,7 +128,7 @@ TEST(RewriteCalls, OneToolsPartIsChangedAndTheOthersStay) {
   const std::string text =
       "T1 M6\nS900 M3\nG0 X0 Y0 Z5\nF100\nM98 P1\nG0 Z9\nT2 M6\nS800 M3\nG0 X0 Y0 Z5\nM98 P1 L2\nM30\nO1\nG91\n"
       "G1 Z-1\nG90\nG0 Z5\nM99\n";
-  Case one = {.text = text, .reading = {.tool = 1}};
+  Case one = {.text = text, .reading = {.tool = {.number = 1}}};
   for (Block& block : one.wanted.blocks) {
     if (block.kind == Block::Kind::feed) block.duration_s *= 0.5;
   }
@@ -136,7 +136,7 @@ TEST(RewriteCalls, OneToolsPartIsChangedAndTheOthersStay) {
             "(3 calls of subprograms are expanded in place)\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nF200\n(M98 P1)\nG91\nG1 Z-1\n"
             "G90\nG0 Z5\n(M99)\nG0 Z9\nF100\nT2 M6\nS800 M3\nG0 X0 Y0 Z5\n(M98 P1 L2)\nG91\nG1 Z-1\nG90\nG0 Z5\n(M99)\n"
             "G91\nG1 Z-1\nG90\nG0 Z5\n(M99)\nM30\n");
-  Case two = {.text = text, .reading = {.tool = 2}};
+  Case two = {.text = text, .reading = {.tool = {.number = 2}}};
   two.wanted.blocks[2].duration_s *= 0.5;
   EXPECT_NE(two.rewrite().text.find("(M98 P1 L2)\nG91\nG1 Z-1\nG90\nG0 Z5\n(M99)\nG91\nG1 Z-1 F200\nG90\n"),
             std::string::npos)
