@@ -16,6 +16,10 @@ namespace {
 
 constexpr int hits_per_direction = 5;
 
+std::string full_test() {
+  return fmt::format("the test has {} hits, which is as many as it may", TapHits::most_hits);
+}
+
 }  // namespace
 
 TapSession::TapSession(const Options& options, Publish publish)
@@ -102,12 +106,19 @@ void TapSession::run(const std::stop_token& stop) {
 
 /// True where there was something.
 bool TapSession::take_files() {
-  bool any = false;
-  for (const std::filesystem::path& file :
-       folder_->look(TapHits::most_hits - std::min(TapHits::most_hits, hits_.size()))) {
-    any = take_record(file) || any;
+  const std::size_t size = hits_.size();
+  if (size > TapHits::most_hits) return false;
+  if (size < TapHits::most_hits) {
+    bool any = false;
+    for (const std::filesystem::path& file : folder_->look(TapHits::most_hits - size)) any = take_record(file) || any;
+    return any;
   }
-  return any;
+  for (const std::filesystem::path& file : folder_->look(1)) {
+    hits_.add({.name = file.filename().string(), .files = {file}, .row = settings_.row(file)},
+              full_test() + ": this record and later ones are not read");
+    return true;
+  }
+  return false;
 }
 
 /// A file alone, or the last one of a record that has several. True: what is shown has changed
@@ -154,7 +165,7 @@ bool TapSession::take_records() {
   bool any = false;
   for (const TapStream::Cut& cut : stream_->take()) {
     if (hits_.size() >= TapHits::most_hits) {
-      stream_->reject(fmt::format("the test has {} hits, which is as many as it may", TapHits::most_hits));
+      stream_->reject(full_test());
       continue;
     }
     TapHit taken = {.name = fmt::format("hit {}", hits_.size() + 1), .direction = cut.direction};
