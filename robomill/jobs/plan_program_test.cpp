@@ -226,6 +226,39 @@ TEST_F(PlannedPasses, TheProgramThatIsWrittenIsTheOneThatWasJudged) {
   }
 }
 
+// A program that calls is decided as the same one without calls, each pass for itself.
+TEST_F(PlannedPasses, PassesOfASubprogramAreDecidedEachForItself) {
+  folder_.file("modes.json", modal::modes_json(process::testing::three_passes_modes()));
+  std::string calls = "o<pass> sub\n";
+  for (int i = 1; i <= 6; ++i) calls += fmt::format("G1 X{} F600 (a pass)\n", -12 + 4 * i);
+  calls += "G0 Z5\no<pass> endsub\nG21 G90 G94\nS12000 M3\n";
+  for (int pass = 0; pass < 3; ++pass) {
+    calls += fmt::format("G0 X-12 Y{} Z5\nG0 Z-{}\no<pass> call\n", pass, 0.6 + 0.2 * pass);
+  }
+  folder_.file("calls.ngc", calls + "M2\n");
+  const auto decided = [&](const std::string& program) {
+    const PlanResult plan = run_job(
+        folder_.file("job.toml", "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"" + program +
+                                     "\"\nmodes = \"modes.json\"\n[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = "
+                                     "18000\n"),
+        1);
+    return plan.decided.value().text.value();
+  };
+  const program::Rewritten text = decided("calls.ngc");
+  EXPECT_EQ(text.expanded_calls, 3U);
+  EXPECT_NE(text.text.find("(3 calls of subprograms are expanded in place)"), std::string::npos) << text.text;
+  const program::Program got = program::read_program_text(text.text, "calls.ngc");
+  const program::Program plain = program::read_program_text(decided("part.ngc").text, "part.ngc");
+  ASSERT_EQ(got.blocks.size(), plain.blocks.size());
+  for (std::size_t i = 0; i < plain.blocks.size(); ++i) {
+    const program::Block& a = got.blocks[i];
+    const program::Block& b = plain.blocks[i];
+    EXPECT_LT((a.end.tip_m - b.end.tip_m).norm(), 1e-9) << i;
+    EXPECT_NEAR(a.spindle_speed_rad_per_s, b.spindle_speed_rad_per_s, 1e-5 * b.spindle_speed_rad_per_s) << i;
+    EXPECT_NEAR(a.duration_s, b.duration_s, 1e-5 * b.duration_s) << i;
+  }
+}
+
 // The head of the program says what was looked at, and no more.
 TEST_F(PlannedPasses, TheHeadOfTheProgramSaysWhatWasChecked) {
   folder_.file("modes.json", modal::modes_json(process::testing::three_passes_modes()));
