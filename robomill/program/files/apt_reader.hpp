@@ -58,8 +58,6 @@ class AptReader final : public ProgramReader {
   bool advance() override;
   /// Whether a statement moves a tool that is not chosen, and so counts for nothing.
   bool pass_over();
-  /// The chosen tool is mounted again behind moves of others: it may make no move more, and stands nowhere.
-  [[nodiscard]] bool is_over() const { return tools_.between() != nullptr; }
   void at_end() override;
 
   void split(std::string_view statement);

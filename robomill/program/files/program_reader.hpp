@@ -164,6 +164,8 @@ class ProgramReader {
   }
   /// What moves is of a tool that is not chosen.
   [[nodiscard]] bool passes() const { return tools_.passes(); }
+  /// The chosen tool is mounted again behind moves of others: it may make no move more, and stands nowhere.
+  [[nodiscard]] bool is_over() const { return tools_.between() != nullptr; }
   /// From this statement on. @param name  "T4"
   void mount_tool(std::optional<int> number, std::string name);
   /// The tool that is mounted moves. @throws InvalidInput where another one has moved since the chosen one did

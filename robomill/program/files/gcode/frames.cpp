@@ -207,7 +207,7 @@ void GcodeReader::go_home(const Line& line) {
     check_coordinate(axis_names[i], point.tip_m[axis], *line.position[i], unit_name());
   }
   skip(said);
-  const bool known = start_ && !pending_ && tools_.between() == nullptr;
+  const bool known = start_ && !pending_ && !is_over();
   if (known && !setup_change(line) && moves_to(point)) move(Block::Kind::rapid, point, 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
     if (line.position[i] || (!named && !turns)) lose(i, code);

@@ -214,7 +214,7 @@ void GcodeReader::carry_out_part(Line& line) {
     highest_m_ = highest_known_ ? std::max(highest_m_, begin_m) : begin_m;
     highest_known_ = true;
   }
-  if (start_) stop_after_ = line.stop;
+  if (start_ && !is_over()) stop_after_ = line.stop;
   if (!ready_) ready_ = advance();
 }
 
@@ -320,7 +320,7 @@ void GcodeReader::wait(const Line& line) {
   constexpr double long_s = 100.0;
   const double time_s = seconds_of(*line.p, long_s);
   check_dwell("P", time_s, "P counts in seconds here");
-  if (!start_ || time_s == 0.0) {
+  if (!start_ || is_over() || time_s == 0.0) {
     skip(fmt::format("G4 P{:g}", time_s));
     return;
   }
