@@ -61,9 +61,18 @@ struct ROBOMILL_API ProgramForceOptions {
   void validate() const;
 };
 
-/// Runs the program through the workpiece and gives a force for each of its blocks, in their order. The feed per tooth
-/// is that of the middle of what cuts. A feed move without a spindle speed is rejected.
+/// Gets the force of a block once the program is past it.
+using DeliverForce = std::function<void(const BlockForce& force)>;
+
+/// Runs the program through the workpiece and hands out a force for each of its blocks, in their order; memory does not
+/// grow with the program. The feed per tooth is that of the middle of what cuts. A feed move without a spindle speed is
+/// rejected.
 /// @throws InvalidInput for a bad cutter, coefficients or options; Interrupted when asked to stop
+ROBOMILL_API void program_forces(const program::Program& program, const Cutter& cutter,
+                                 const MillingCoefficients& coefficients, Workpiece& workpiece,
+                                 const ProgramForceOptions& options, const DeliverForce& deliver,
+                                 Progress& progress = Progress::none());
+/// The same, all of them.
 [[nodiscard]] ROBOMILL_API std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
                                                                   const MillingCoefficients& coefficients,
                                                                   Workpiece& workpiece,
@@ -72,8 +81,13 @@ struct ROBOMILL_API ProgramForceOptions {
 
 /// The same for a finishing program of a ball end, from the program alone: every block cuts `axial_depth_m` deep beside
 /// its neighbouring pass, on the plane or the cylinder that LocalCuts makes out; a block without one is a slot. The
-/// middle of a block stands for all of it, and options.walk has no part.
+/// middle of a block stands for all of it, and options.walk has no part. Where blocks pass is held (LocalCuts).
 /// @throws InvalidInput as above, and for a cutter that is no ball end
+ROBOMILL_API void local_program_forces(const program::Program& program, const Cutter& cutter,
+                                       const MillingCoefficients& coefficients, double axial_depth_m,
+                                       const ProgramForceOptions& options, const DeliverForce& deliver,
+                                       Progress& progress = Progress::none());
+/// The same, all of them.
 [[nodiscard]] ROBOMILL_API std::vector<BlockForce> local_program_forces(
     const program::Program& program, const Cutter& cutter, const MillingCoefficients& coefficients,
     double axial_depth_m, const ProgramForceOptions& options, Progress& progress = Progress::none());

@@ -17,6 +17,7 @@ using Cells = Eigen::Array<std::ptrdiff_t, 3, 1>;
 
 constexpr double bytes_of_ray = 36.0;  ///< with some that have two intervals
 constexpr double finest_dexel_m = 1e-6;
+constexpr double rounding_m = 1e-9;
 constexpr std::size_t row_grain = 16;
 constexpr double worth_sharing = 6e4;   ///< rays; fewer are cut before another thread has woken
 constexpr double shank_patience = 4.0;  ///< how much farther than the edges the shank may swing in a step
@@ -286,9 +287,19 @@ Removal Workpiece::remove(const Profile& cutter, const program::Pose& from, cons
   return total;
 }
 
+bool Workpiece::is_far_off(const Vector3d& low_m, const Vector3d& high_m) const {
+  const double off_m = -farthest_m() + rounding_m;
+  return (low_m.array() > grid_->highest.array() + off_m).any() ||
+         (high_m.array() < grid_->lowest.array() - off_m).any();
+}
+
+double Workpiece::farthest_m() const {
+  return -3.0 * grid_->dexel;
+}
+
 double Workpiece::depth_m(const Vector3d& point_m) const {
   const Grid& grid = *grid_;
-  const double limit = 3.0 * grid.dexel;
+  const double limit = -farthest_m();
   const double within =
       std::min((point_m - grid.lowest).minCoeff(), (grid.highest - point_m).minCoeff());  // of the stock's box
   if (within < -limit) return -limit;

@@ -66,6 +66,9 @@ class ROBOMILL_API Workpiece {
   /// How deep a point lies in material [m], negative outside, along the direction that sees the surface best, from the
   /// four rays about the point; cut off at ±3 dexels.
   [[nodiscard]] double depth_m(const Eigen::Vector3d& point_m) const;
+  /// Whether a box stands so far off the stock's own that depth_m is farthest_m() at each of its points.
+  [[nodiscard]] bool is_far_off(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m) const;
+  [[nodiscard]] double farthest_m() const;           ///< where depth_m is cut off outside: -3 dexels
   [[nodiscard]] Eigen::Vector3d volumes_m3() const;  ///< as the rays along x, y and z see it
   [[nodiscard]] double dexel_m() const;              ///< largest of the three spacings
   [[nodiscard]] std::size_t memory_bytes() const;

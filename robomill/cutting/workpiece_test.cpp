@@ -356,6 +356,26 @@ TEST(Workpiece, DepthInterpolatesBetweenRays) {
   }
 }
 
+// Where a box is far off, every point of it has the depth that is cut off outside.
+TEST(Workpiece, NothingOfABoxFarOffIsNearMaterial) {
+  const Workpiece part(box({0.0, 0.0, 0.0}, {0.004, 0.003, 0.002}), 0.25e-3);
+  Random random(7);
+  int far = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d middle(random.uniform(-0.005, 0.009), random.uniform(-0.005, 0.009), random.uniform(-0.005, 0.009));
+    const Vector3d reach(random.uniform(0.0, 0.002), random.uniform(0.0, 0.002), random.uniform(0.0, 0.002));
+    if (!part.is_far_off(middle - reach, middle + reach)) continue;
+    ++far;
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d at(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+      EXPECT_EQ(part.depth_m(middle + reach.cwiseProduct(at)), part.farthest_m());
+    }
+  }
+  EXPECT_GT(far, 200);
+  EXPECT_TRUE(part.is_far_off({0.0, 0.0, 0.003}, {0.004, 0.003, 0.004}));
+  EXPECT_FALSE(part.is_far_off({0.0, 0.0, 0.0026}, {0.004, 0.003, 0.004}));
+}
+
 TEST(Stock, HoldsItsVolume) {
   Stock stock;
   stock.shape = Stock::Shape::cylinder;

@@ -27,7 +27,7 @@ class Columns {
 
   [[nodiscard]] Json write(const std::vector<T>& lines) const {
     Json out = Json::object();
-    for (const Row<T>* row : columns_of(lines)) {
+    for (const Row<T>* row : columns_of(lines.empty() ? nullptr : &lines.front())) {
       Json& list = out[row->key.name] = Json::array();
       for (const T& line : lines) list.push_back(of_->value(*row, line));
     }
@@ -35,25 +35,53 @@ class Columns {
   }
 
   [[nodiscard]] std::string csv(const std::vector<T>& lines) const {
-    const std::vector<const Row<T>*> rows = columns_of(lines);
     std::string out;
-    for (const Row<T>* row : rows) out += (out.empty() ? "" : ",") + row->key.name;
-    out += '\n';
-    for (const T& line : lines) {
-      for (const Row<T>* row : rows) {
-        if (row != rows.front()) out += ',';
-        append_cell(out, of_->value(*row, line));
-      }
-      out += '\n';
-    }
+    CsvRows rows(*this);
+    for (const T& line : lines) rows.add(out, line);
+    rows.end(out);
     return out;
   }
 
+  /// The CSV row by row: its lines are never held together.
+  class CsvRows {
+   public:
+    /// @param of  outlives this
+    explicit CsvRows(const Columns& of) : of_(of) {}
+    /// Adds a line to a text; before the first one their names.
+    void add(std::string& out, const T& line) {
+      if (!begun_) begin(out, of_.columns_of(&line));
+      for (const Row<T>* row : rows_) {
+        if (row != rows_.front()) out += ',';
+        append_cell(out, of_.of_->value(*row, line));
+      }
+      out += '\n';
+    }
+    /// The names alone where there was no line.
+    void end(std::string& out) {
+      if (!begun_) begin(out, of_.columns_of(nullptr));
+    }
+
+   private:
+    void begin(std::string& out, std::vector<const Row<T>*> rows) {
+      begun_ = true;
+      rows_ = std::move(rows);
+      for (const Row<T>* row : rows_) {
+        if (row != rows_.front()) out += ',';
+        out += row->key.name;
+      }
+      out += '\n';
+    }
+    const Columns& of_;
+    std::vector<const Row<T>*> rows_;
+    bool begun_ = false;
+  };
+
  private:
-  [[nodiscard]] std::vector<const Row<T>*> columns_of(const std::vector<T>& lines) const {
+  /// @param first  line; null: there is none
+  [[nodiscard]] std::vector<const Row<T>*> columns_of(const T* first) const {
     std::vector<const Row<T>*> out;
     for (const Row<T>& row : of_->rows()) {
-      if (lines.empty() || !of_->value(row, lines.front()).is_discarded()) out.push_back(&row);
+      if (first == nullptr || !of_->value(row, *first).is_discarded()) out.push_back(&row);
     }
     return out;
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "robomill/io/file.hpp"
+#include "robomill/io/json_text.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/usual_ranges.hpp"
 
@@ -129,6 +130,40 @@ std::string dump(const Json& json) {
   append_value(out, json, 0);
   out += '\n';
   return out;
+}
+
+void JsonText::begin(std::string_view key) {
+  text_ = empty_ ? "{\n  " : ",\n  ";
+  empty_ = false;
+  text_.append(plain_text(Json(key))).append(": ");
+}
+
+void JsonText::add(std::string_view key, const Json& value) {
+  begin(key);
+  append_value(text_, value, 1);
+  take_(text_);
+}
+
+void JsonText::begin_list(std::string_view key) {
+  begin(key);
+  text_ += '[';
+  empty_list_ = true;
+  take_(text_);
+}
+
+void JsonText::add_entry(const Json& entry) {
+  text_ = empty_list_ ? "\n    " : ",\n    ";
+  empty_list_ = false;
+  append_value(text_, entry, 2);
+  take_(text_);
+}
+
+void JsonText::end_list() {
+  take_(empty_list_ ? "]" : "\n  ]");
+}
+
+void JsonText::end() {
+  take_(empty_ ? "{}\n" : "\n}\n");
 }
 
 Json parsed(std::string_view text) {

@@ -8,6 +8,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/json_text.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::io {
@@ -32,6 +33,25 @@ TEST(JsonText, WritesForPeopleToo) {
             "  \"h\": {\n    \"re\": [1.0, 3.0],\n    \"im\": [2.0, 0.0]\n  },\n"
             "  \"rows\": [\n    {\n      \"a\": 1\n    },\n    {\n      \"a\": 2\n    }\n  ],\n"
             "  \"empty\": [],\n  \"text\": \"a \\\"b\\\"\\n\xEF\xBF\xBD\"\n}\n");
+}
+
+TEST(JsonText, IsTheSameKeyByKeyAndEntryByEntry) {
+  for (const std::size_t entries : {0U, 1U, 3U}) {
+    Json json = {{"before", numbers(Eigen::Vector2d(1.0, 2.0))}, {"rows", Json::array()}, {"after", Json::object()}};
+    for (std::size_t i = 0; i < entries; ++i) json["rows"].push_back({{"a", i}, {"b", Json::array({1, 2})}});
+    std::string text;
+    JsonText pieces([&](std::string_view piece) { text += piece; });
+    pieces.add("before", json["before"]);
+    pieces.begin_list("rows");
+    for (const Json& row : json["rows"]) pieces.add_entry(row);
+    pieces.end_list();
+    pieces.add("after", json["after"]);
+    pieces.end();
+    EXPECT_EQ(text, dump(json));
+  }
+  std::string text;
+  JsonText([&](std::string_view piece) { text += piece; }).end();
+  EXPECT_EQ(text, dump(Json::object()));
 }
 
 TEST(JsonText, GivesBackEveryBit) {

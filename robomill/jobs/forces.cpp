@@ -45,6 +45,7 @@ process::ForcesResult run_forces_along(const process::ForcesFile& forces, const 
   cell = cell_of(forces, std::move(cell));
   const program::ProgramReading of_cell = cell ? cell::program_reading(*cell) : program::ProgramReading{};
   process::Cut cut = cut_of(forces, cell.has_value());
+  progress.start("reading the program", 1);
   return forces.located([&] {
     return process::forces_along(std::move(cut), program::read_program(program, reading.value_or(of_cell)), program,
                                  std::move(cell), run, progress);

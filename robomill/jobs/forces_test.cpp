@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -14,7 +15,9 @@
 #include "robomill/base/error.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/page/report.hpp"
+#include "robomill/process/files/forces_schema.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -148,6 +151,37 @@ TEST(RunForces, RunsAlongAProgramWithTheRobot) {
   const std::vector<process::SpindleLoad> loads = process::spindle_loads(result);
   ASSERT_GT(loads.size(), 200U);
   EXPECT_GT(loads[0].torque_n_m, 0.0);
+}
+
+// The documents come in pieces, and are those of the schemas.
+TEST(RunForces, WritesAProgramInPieces) {
+  const process::ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  constexpr std::size_t most_bytes = 100'000;
+  std::size_t steps = 0;
+  Progress progress([&](const std::string&, double) { ++steps; }, nullptr);
+  for (const bool csv : {true, false}) {
+    std::string text;
+    const auto take = [&](std::string_view piece) {
+      EXPECT_LT(piece.size(), most_bytes);
+      text += piece;
+    };
+    csv ? process::write_forces_csv(result, take, progress) : process::write_forces_json(result, take, progress);
+    EXPECT_EQ(text, csv ? process::forces_csv(result) : process::forces_json(result));
+  }
+  EXPECT_GT(steps, 2 * result.program->blocks.size());
+  EXPECT_EQ(process::forces_json(result), io::dump(process::forces_table().write(result)));
+  const Folder folder;
+  write_document(folder.at("forces.csv"), result);
+  EXPECT_EQ(io::read_file(folder.at("forces.csv")), process::forces_csv(result));
+}
+
+TEST(RunForces, StopsWhileItWrites) {
+  const process::ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  const std::atomic<bool> stop = true;
+  Progress progress({}, &stop);
+  const Folder folder;
+  EXPECT_THROW(write_document(folder.at("forces.json"), result, progress), Interrupted);
+  EXPECT_FALSE(std::filesystem::exists(folder.at("forces.json")));
 }
 
 // highest and worst are those of all blocks that cut; the way is the sum of the blocks' lengths.

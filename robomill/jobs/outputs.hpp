@@ -75,6 +75,9 @@ void write_document(const std::filesystem::path& path, const FrfJobResult& resul
                     const modal::FrfWriteOptions& options = {});
 void write_document(const std::filesystem::path& path, const TipPrediction& result);
 void write_document(const std::filesystem::path& path, const SimulateResult& result);
+/// Along a program it is written row by row.
+void write_document(const std::filesystem::path& path, const process::ForcesResult& result,
+                    Progress& progress = Progress::none());
 /// As .toml, a line for cell.toml, only where the stiffness converged.
 void write_document(const std::filesystem::path& path, const StiffnessResult& result);
 /// As .toml, a detector, only where one was found.

@@ -1,8 +1,10 @@
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -121,7 +123,15 @@ struct SpindleLoad {
 /// passes.
 [[nodiscard]] ROBOMILL_API std::string stock_text(const ProgramForces& program);
 
-/// A row a step of rotation, or a row a block.
+/// Gets a text piece by piece.
+using TakeText = std::function<void(std::string_view piece)>;
+/// A row a step of rotation, or a row a block; along a program the text is never held whole.
+/// @throws what `take` throws; Interrupted
+ROBOMILL_API void write_forces_csv(const ForcesResult& result, const TakeText& take,
+                                   Progress& progress = Progress::none());
+ROBOMILL_API void write_forces_json(const ForcesResult& result, const TakeText& take,
+                                    Progress& progress = Progress::none());
+/// The same in one text.
 [[nodiscard]] ROBOMILL_API std::string forces_csv(const ForcesResult& result);
 [[nodiscard]] ROBOMILL_API std::string forces_json(const ForcesResult& result);
 

@@ -68,7 +68,7 @@ void add_block(std::string& out, const ProgramForces& program, const char* label
 }
 
 void add_program(std::string& out, const ProgramForces& program, double power_time_s) {
-  const auto highest = [&](auto value) {
+  const auto highest = [&](auto value) -> const BlockResult& {
     return *std::ranges::max_element(program.blocks, {}, [&](const BlockResult& row) { return value(row); });
   };
   append(out, "{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),

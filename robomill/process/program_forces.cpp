@@ -172,15 +172,16 @@ ProgramStock stock_of(const Cut& cut, const program::Program& program) {
   return {.stock = assumed.stock, .assumed = assumed};
 }
 
-/// One run through the material: the forces of every block, and where it has most of the cutter in the material.
-std::vector<BlockForce> run_once(const Cut& cut, const ProgramForces& out, const cutting::ProgramForceOptions& options,
-                                 Progress& progress) {
+/// One run through the material: the forces of every block.
+void run_once(const Cut& cut, const ProgramForces& out, const cutting::ProgramForceOptions& options,
+              const cutting::DeliverForce& deliver, Progress& progress) {
   if (cut.neighbours) {
-    return cutting::local_program_forces(out.program, cut.cutter, cut.coefficients, cut.cut.axial_depth_m, options,
-                                         progress);
+    cutting::local_program_forces(out.program, cut.cutter, cut.coefficients, cut.cut.axial_depth_m, options, deliver,
+                                  progress);
+    return;
   }
   cutting::Workpiece workpiece(out.stock->stock, cut.dexel_m);
-  return cutting::program_forces(out.program, cut.cutter, cut.coefficients, workpiece, options, progress);
+  cutting::program_forces(out.program, cut.cutter, cut.coefficients, workpiece, options, deliver, progress);
 }
 
 /// Passes through the material until force and deflection agree.
@@ -239,17 +240,19 @@ void cut_program(const Cut& cut, bool keep_cuts, const std::vector<Eigen::Matrix
       out.cuts.assign(count, {});
     }
     options.walk.tip_offset_m = offset_m;
-    const std::vector<BlockForce> forces = run_once(cut, out, options, progress);
-    for (std::size_t i = 0; i < count; ++i) {
-      out.blocks[i].force = forces[i];
+    const auto keep = [&](const BlockForce& force) {
+      const std::size_t i = force.block;
+      BlockResult& row = out.blocks[i];
+      row.force = force;
       if (pass == 0) {
-        rigid_cuts[i] = forces[i].cuts();
-        rigid_rapid[i] = forces[i].rapid_in_material;
+        rigid_cuts[i] = force.cuts();
+        rigid_rapid[i] = force.rapid_in_material;
       }
-      out.blocks[i].force.rapid_in_material = forces[i].rapid_in_material && rigid_rapid[i];
-      const bool lost = rigid_cuts[i] && !forces[i].cuts();
-      out.blocks[i].settled = lost ? BlockResult::Settled::lost : BlockResult::Settled::found;
-    }
+      row.force.rapid_in_material = force.rapid_in_material && rigid_rapid[i];
+      const bool lost = rigid_cuts[i] && !force.cuts();
+      row.settled = lost ? BlockResult::Settled::lost : BlockResult::Settled::found;
+    };
+    run_once(cut, out, options, keep, progress);
     if (!out.deflected) return;
     if (!deflect_on(compliance, pass, 0.5 * cut.cutter.mill.diameter_m, offset_m, out.blocks)) return;
   }
@@ -392,8 +395,7 @@ void run_program(ForcesResult& result, program::Program program, const std::file
   if (!cut.neighbours) out.stock = stock_of(cut, out.program);
   out.blocks.resize(out.program.blocks.size());
   out.deflected = run.deflect && cell && !cut.neighbours;
-  const std::vector<Eigen::Matrix3d> compliance = cell ? compliances(*cell, joints) : std::vector<Eigen::Matrix3d>();
-  cut_program(cut, run.keep_cuts, compliance, out, progress);
+  cut_program(cut, run.keep_cuts, cell ? compliances(*cell, joints) : std::vector<Eigen::Matrix3d>(), out, progress);
   for (const BlockResult& row : out.blocks) out.removed_volume_m3 += row.force.removed_volume_m3;
   if (cell) reported_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
   warn_of_blocks(cut, out, result.warnings);

@@ -48,6 +48,13 @@ void RingLook::at(const EdgeSlice& slice, double angle_step_rad, Seen& seen) con
   seen.depth_m = -part.dexel_m();
   const std::optional<Arc> front = front_of(slice, stand);
   if (!front) return;
+  const Vector3d middle = stand.tip + slice.height_m * stand.z;
+  const Vector3d reach =
+      Vector3d::Constant(ahead_m) + slice.radius_m * (stand.x.cwiseAbs2() + stand.y.cwiseAbs2()).cwiseSqrt();
+  if (part.is_far_off(middle - reach, middle + reach)) {
+    seen.depth_m = part.farthest_m();
+    return;
+  }
   const auto depth_at = [&](double phi) {
     Vector3d p =
         stand.tip + slice.radius_m * (std::sin(phi) * stand.x + std::cos(phi) * stand.y) + slice.height_m * stand.z;

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,10 +41,6 @@ double size_of(const std::string& unit) {
   return si.quantity == Quantity::unknown ? 0.0 : si.factor;
 }
 
-Eigen::VectorXd vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 /// Times come in s. @throws InvalidInput where name and row of a column state two units
 void take_units(Record& record) {
   for (std::size_t i = 0; i < record.units.size(); ++i) {
@@ -72,25 +70,41 @@ Record read_lvm_or_text(const Path& path, const RecordOptions& options) {
   return read_lvm(path);
 }
 
+/// As many as the header states, where the file may hold them.
+Eigen::Index likely_frames(const SoundFile& file) {
+  constexpr std::uintmax_t most_samples_a_byte = 8;
+  std::error_code ignored;
+  const std::uintmax_t bytes = std::filesystem::file_size(file.path, ignored);
+  const std::uintmax_t most = most_samples_a_byte * (ignored ? 0 : bytes) / static_cast<unsigned>(file.info.channels);
+  return static_cast<Eigen::Index>(std::min<std::uintmax_t>(most, std::max<sf_count_t>(file.info.frames, 0)));
+}
+
 Record read_wav_record(const Path& path, double scale) {
   const SoundFile file = open_sound(path);
   const auto channels = static_cast<std::size_t>(file.info.channels);
   Record record{.file = path, .sample_rate_hz = static_cast<double>(file.info.samplerate), .names = {}, .columns = {}};
   if (!file.note.empty()) record.notes.push_back(file.note);
   record.names.resize(channels);
-  std::vector<std::vector<double>> columns(channels);
-  // In blocks: what the header says of the length may be wrong.
-  const std::size_t block_frames = std::max<std::size_t>(1, 8192 / channels);
-  std::vector<double> block(block_frames * channels);
+  // In blocks, and columns that grow: what the header says of the length may be wrong.
+  const auto block_frames = std::max<Eigen::Index>(1, 8192 / static_cast<Eigen::Index>(channels));
+  std::vector<double> block(static_cast<std::size_t>(block_frames) * channels);
+  record.columns.assign(channels, Eigen::VectorXd(likely_frames(file)));
+  Eigen::Index length = 0;
   sf_count_t frames = 0;
-  while ((frames = sf_readf_double(file.sound.get(), block.data(), static_cast<sf_count_t>(block_frames))) > 0) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(frames) * channels; ++i) {
-      columns[i % channels].push_back(scale * block[i]);
+  while ((frames = sf_readf_double(file.sound.get(), block.data(), block_frames)) > 0) {
+    const Eigen::Index needed = length + frames;
+    for (std::size_t i = 0; i < channels; ++i) {
+      Eigen::VectorXd& column = record.columns[i];
+      if (needed > column.size()) column.conservativeResize(std::max(needed, 2 * column.size()));
+      for (Eigen::Index k = 0; k < frames; ++k) {
+        column[length + k] = scale * block[static_cast<std::size_t>(k) * channels + i];
+      }
     }
+    length = needed;
   }
   require_read(file);
-  if (columns.front().empty()) throw InvalidInput(path.string(), "holds no samples");
-  for (const std::vector<double>& column : columns) record.columns.push_back(vector(column));
+  if (length == 0) throw InvalidInput(path.string(), "holds no samples");
+  for (Eigen::VectorXd& column : record.columns) column.conservativeResize(length);
   return record;
 }
 

@@ -144,6 +144,16 @@ void write_document(const std::filesystem::path& path, const SimulateResult& res
   if (io::format_of(path) == Format::json) return write_text(path, document(result, Format::json));
   simulation::write_simulation(path, result.simulation);
 }
+void write_document(const std::filesystem::path& path, const process::ForcesResult& result, Progress& progress) {
+  io::LineFile file(path);
+  const auto take = [&](std::string_view piece) { static_cast<void>(file.write(piece)); };  // close() says what failed
+  if (io::format_of(path) == Format::csv) {
+    process::write_forces_csv(result, take, progress);
+  } else {
+    process::write_forces_json(result, take, progress);
+  }
+  file.close();
+}
 void write_document(const std::filesystem::path& path, const StiffnessResult& result) {
   // A line for cell.toml says nothing of its convergence.
   if (result.converged() || io::format_of(path) != Format::toml)

@@ -59,7 +59,7 @@ process::ForcesResult forces_from(const VerbJob& job, Progress& progress) {
 }
 
 Outcome run_forces_verb(const VerbJob& job, Progress& progress) {
-  return with_posture(job, [&] { return finished(job, forces_from(job, progress)); });
+  return with_posture(job, [&] { return finished(job, forces_from(job, progress), progress); });
 }
 
 Outcome run_coefficients_verb(const VerbJob& job, Progress&) {

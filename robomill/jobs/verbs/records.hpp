@@ -44,8 +44,8 @@ Outcome outcome_of(Result result, std::string json = {}) {
 /// Writes what was found where the job asks for it.
 /// @param how  more of write_document
 template <class Result, class... How>
-Outcome finished(const VerbJob& job, Result result, const How&... how) {
-  if (!job.output.empty()) write_document(job.output, result, how...);
+Outcome finished(const VerbJob& job, Result result, How&&... how) {
+  if (!job.output.empty()) write_document(job.output, result, std::forward<How>(how)...);
   std::string json = job.wants_json ? document(result, io::Format::json) : std::string();
   return outcome_of(std::move(result), std::move(json));
 }

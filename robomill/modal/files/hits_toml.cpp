@@ -243,8 +243,23 @@ RecordOfHits open_record(const io::TomlFile& file, const std::string& key, const
   });
 }
 
-/// The columns that a row names, in SI.
-Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, const RecordOfHits& record,
+/// A column that a row names.
+struct NamedColumn {
+  io::Record* part = nullptr;
+  std::size_t place = 0;
+  double factor = 1.0;  ///< makes SI of it
+};
+
+/// The samples in SI. @param last  no column behind it is the same: they are moved out of the record
+Eigen::VectorXd samples_of(const NamedColumn& column, bool last) {
+  Eigen::VectorXd& recorded = column.part->columns[column.place];
+  Eigen::VectorXd samples = last ? std::move(recorded) : recorded;
+  samples *= column.factor;
+  return samples;
+}
+
+/// The columns that a row names, in SI; the record is used up, so that no sample is held twice.
+Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& columns, RecordOfHits record,
            const ReadColumns& as, OpenUnits& open, std::vector<std::string>& notes) {
   Hit hit;
   for (const io::Record& part : record.parts) hit.file += (hit.file.empty() ? "" : " + ") + part.file.string();
@@ -258,13 +273,24 @@ Hit hit_of(const io::TomlFile& file, const std::string& row, const HitRow& colum
     open.volts = open.volts || (!unit.stated && read_as.in_volts && !file.has(read_as.voltage));
     return read_as.given_factor * unit.factor;
   };
-  const RecordOfHits::Column force = file.locate([&] { return record.column(columns.force, true); });
-  hit.force_n = force.samples() * factor("force", force, as.force, open.force);
-  for (const HitRow::Response& response : columns.responses) {
-    const RecordOfHits::Column column = file.locate([&] { return record.column(response.column, false); });
-    hit.responses.push_back({.dof = response.dof,
-                             .samples = column.samples() * factor("responses", column, as.response, open.response),
-                             .against_axis = response.against_axis});
+  std::vector<NamedColumn> named;
+  const auto name = [&](const std::string& text, bool is_force) {
+    const RecordOfHits::Column column = file.locate([&] { return record.column(text, is_force); });
+    const auto part = static_cast<std::size_t>(column.part - record.parts.data());
+    const double si = is_force ? factor("force", column, as.force, open.force)
+                               : factor("responses", column, as.response, open.response);
+    named.push_back({.part = &record.parts[part], .place = column.place, .factor = si});
+  };
+  name(columns.force, true);
+  for (const HitRow::Response& response : columns.responses) name(response.column, false);
+  const auto samples = [&](std::size_t i) {
+    const auto same = [&](const NamedColumn& one) { return one.part == named[i].part && one.place == named[i].place; };
+    return samples_of(named[i], std::none_of(named.begin() + static_cast<std::ptrdiff_t>(i) + 1, named.end(), same));
+  };
+  hit.force_n = samples(0);
+  for (std::size_t i = 0; i < columns.responses.size(); ++i) {
+    const HitRow::Response& response = columns.responses[i];
+    hit.responses.push_back({.dof = response.dof, .samples = samples(i + 1), .against_axis = response.against_axis});
   }
   for (const std::string& note : converted) {
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
@@ -299,16 +325,17 @@ std::vector<Hit> read_row(io::TomlFile& file, std::size_t index, const ReadColum
   file.require(row + "file");
   HitTable given;
   hit_table().read(file, fmt::format("hits[{}]", index), given);
-  const RecordOfHits record = open_record(file, row + "file", given, sensors);
+  RecordOfHits record = open_record(file, row + "file", given, sensors);
   std::ranges::copy(record.notes, std::back_inserter(notes));
   if (!(record.sample_rate_hz > 0.0)) {
     throw file.reject(row + "file", "has no time column, and acquisition.sample_rate_hz is missing");
   }
-  Hit whole = hit_of(file, row, given.row, record, as, open, notes);
+  const double begin_s = record.begin_s;
+  Hit whole = hit_of(file, row, given.row, std::move(record), as, open, notes);
   const std::string name = whole.file;
   std::vector<Hit> hits;
   if (given.split) {
-    hits = split_hits(std::move(whole), sensors.hit_spacing_s, record.begin_s);
+    hits = split_hits(std::move(whole), sensors.hit_spacing_s, begin_s);
   } else {
     hits.push_back(std::move(whole));
   }

@@ -123,21 +123,48 @@ class Faults {
   std::vector<double> sizes_;
 };
 
-/// A record that is too short to be one reaches into the hit before: it is rejected anyway.
-Hit part_of(const Hit& record, const HitSegment& segment) {
-  const Index begin = std::max<Index>(0, std::min(segment.begin, segment.end - fewest_kept));
-  const Index length = segment.end - begin;
-  Hit hit{.file = record.file,
-          .excitation = record.excitation,
-          .against_axis = record.against_axis,
-          .sample_rate_hz = record.sample_rate_hz,
-          .force_n = record.force_n.segment(begin, length),
-          .responses = {}};
-  for (const HitChannel& channel : record.responses) {
-    hit.responses.push_back(
-        {.dof = channel.dof, .samples = channel.samples.segment(begin, length), .against_axis = channel.against_axis});
+std::vector<std::string> faults_of(const Hit& record, const std::vector<HitSegment>& segments) {
+  const Faults faults(record, segments);
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < segments.size(); ++k) out.push_back(faults.of(k));
+  return out;
+}
+
+/// Where a hit's samples begin. A record that is too short to be one reaches into the hit before: it is rejected
+/// anyway.
+Index first_of(const HitSegment& segment) {
+  return std::max<Index>(0, std::min(segment.begin, segment.end - fewest_kept));
+}
+
+/// Cuts a channel apart, which ends it: the record and its hits are never held twice.
+std::vector<Eigen::VectorXd> cut_apart(Eigen::VectorXd samples, const std::vector<HitSegment>& segments) {
+  std::vector<Eigen::VectorXd> out;
+  out.reserve(segments.size());
+  for (const HitSegment& segment : segments) {
+    const Index begin = first_of(segment);
+    out.emplace_back(samples.segment(begin, segment.end - begin));
   }
-  return hit;
+  return out;
+}
+
+std::vector<Hit> cut_apart(Hit record, const std::vector<HitSegment>& segments) {
+  std::vector<Hit> out(segments.size());
+  std::vector<Eigen::VectorXd> forces = cut_apart(std::move(record.force_n), segments);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].file = record.file;
+    out[k].excitation = record.excitation;
+    out[k].against_axis = record.against_axis;
+    out[k].sample_rate_hz = record.sample_rate_hz;
+    out[k].force_n = std::move(forces[k]);
+  }
+  for (HitChannel& channel : record.responses) {
+    std::vector<Eigen::VectorXd> samples = cut_apart(std::move(channel.samples), segments);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      out[k].responses.push_back(
+          {.dof = channel.dof, .samples = std::move(samples[k]), .against_axis = channel.against_axis});
+    }
+  }
+  return out;
 }
 
 /// Lengths that are equal and numbers that are finite: what cannot be cut is left to who judges it.
@@ -196,12 +223,13 @@ std::vector<Hit> split_hits(Hit record, double spacing_s, double begin_s) {
     out.push_back(std::move(record));
     return out;
   }
-  const Faults faults(record, segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    out.push_back(part_of(record, segments[k]));
-    out.back().file = fmt::format("{}, hit {} of {} at {:.2f} s", record.file, k + 1, segments.size(),
-                                  begin_s + static_cast<double>(segments[k].peak) / record.sample_rate_hz);
-    out.back().fault = faults.of(k);
+  const std::vector<std::string> faults = faults_of(record, segments);
+  out = cut_apart(std::move(record), segments);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    Hit& hit = out[k];
+    hit.fault = faults[k];
+    hit.file = fmt::format("{}, hit {} of {} at {:.2f} s", hit.file, k + 1, segments.size(),
+                           begin_s + static_cast<double>(segments[k].peak) / hit.sample_rate_hz);
   }
   return out;
 }

@@ -115,6 +115,8 @@ std::vector<Row<ForcesLine>> column_keys() {
   return rows;
 }
 
+}  // namespace
+
 const Schema<ForcesLine>& line_table() {
   static const Schema<ForcesLine> table(
       "forces_block", "forces of a block, with how far and how long the program has run at its end",
@@ -130,15 +132,24 @@ const Schema<ForcesLine>& line_table() {
   return table;
 }
 
-/// The blocks that cut and their values of a key, those left out of which it is not known.
+namespace {
+
+/// A block that cuts and its value of a key.
 using Ranked = std::pair<double, ForcesLine>;
-std::vector<Ranked> cutting_lines(const ForcesResult& forces, std::string_view name) {
+/// Those with the highest values of a key, the highest first, of equal ones the first; blocks are left out of which it
+/// is not known.
+std::vector<Ranked> highest_lines(const ForcesResult& forces, std::string_view name, std::size_t most) {
   const auto row = std::ranges::find_if(line_table().rows(), [&](const auto& one) { return one.key.name == name; });
   std::vector<Ranked> out;
-  for (const ForcesLine& at : lines_of(forces)) {
-    if (!at.result->force.cuts()) continue;
-    if (const Json value = row->write(at, *row); value.is_number()) out.emplace_back(value.get<double>(), at);
-  }
+  each_line(forces, [&](const ForcesLine& at) {
+    if (!at.result->force.cuts()) return;
+    const Json value = row->write(at, *row);
+    if (!value.is_number()) return;
+    const Ranked one = {value.get<double>(), at};
+    if (out.size() == most && !(one.first > out.back().first)) return;
+    if (out.size() == most) out.pop_back();
+    out.insert(std::ranges::upper_bound(out, one.first, std::ranges::greater(), &Ranked::first), one);
+  });
   return out;
 }
 
@@ -164,10 +175,8 @@ const Schema<ForcesResult>& highest_values_table() {
           rows.push_back(key(
                              name,
                              [name](const ForcesResult& forces) {
-                               const std::vector<Ranked> values = cutting_lines(forces, name);
-                               return values.empty()
-                                          ? std::nullopt
-                                          : std::optional(*std::ranges::max_element(values, {}, &Ranked::first));
+                               const std::vector<Ranked> found = highest_lines(forces, name, 1);
+                               return found.empty() ? std::nullopt : std::optional(found.front());
                              },
                              highest_table(), "none: no block cuts, or it is not known")
                              .nullable());
@@ -178,15 +187,19 @@ const Schema<ForcesResult>& highest_values_table() {
   return table;
 }
 
+/// All of them.
+std::vector<ForcesLine> lines_of(const ForcesResult& forces) {
+  std::vector<ForcesLine> out;
+  out.reserve(forces.program->blocks.size());
+  each_line(forces, [&](const ForcesLine& line) { out.push_back(line); });
+  return out;
+}
+
 /// The blocks with the highest peak force, the worst first.
 std::vector<ForcesLine> worst_lines(const ForcesResult& forces) {
   constexpr std::size_t most = 10;
-  std::vector<Ranked> order = cutting_lines(forces, "peak_f_n");
-  std::ranges::stable_sort(order, std::ranges::greater(), &Ranked::first);
-  order.resize(std::min(order.size(), most));
   std::vector<ForcesLine> out;
-  out.reserve(order.size());
-  for (const Ranked& one : order) out.push_back(one.second);
+  for (const Ranked& one : highest_lines(forces, "peak_f_n", most)) out.push_back(one.second);
   return out;
 }
 
@@ -244,7 +257,7 @@ std::vector<Row<ForcesResult>> program_keys() {
           "worst", [](const ForcesResult& result) { return worst_lines(result); }, line_table(),
           "blocks of the highest peak force, ten at most"),
       key(
-          "blocks", [](const ForcesResult& result) { return lines_of(result); }, line_table(), "of the program"),
+          blocks_key, [](const ForcesResult& result) { return lines_of(result); }, line_table(), "of the program"),
       key(
           "skipped", [](const ForcesResult& result) { return result.program->program.skipped; },
           program::skipped_table(), "what its reader left out")};
@@ -282,18 +295,15 @@ const Schema<Fact>& fact_table() {
   return table;
 }
 
-std::vector<ForcesLine> lines_of(const ForcesResult& forces) {
+void each_line(const ForcesResult& forces, const std::function<void(const ForcesLine&)>& use) {
   const ProgramForces& program = *forces.program;
-  std::vector<ForcesLine> out;
-  out.reserve(program.blocks.size());
   double path_m = 0.0, time_s = 0.0;
   for (const BlockResult& row : program.blocks) {
     const program::Block& block = program.program.blocks[row.force.block];
     path_m += (block.end.tip_m - program.program.begin_of(row.force.block).tip_m).norm();
     time_s += block.duration_s;
-    out.push_back({.forces = &forces, .result = &row, .path_m = path_m, .time_s = time_s});
+    use({.forces = &forces, .result = &row, .path_m = path_m, .time_s = time_s});
   }
-  return out;
 }
 
 const io::Columns<ForcesLine>& forces_columns() {

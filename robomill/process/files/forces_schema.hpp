@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,12 @@ struct ForcesLine {
   double path_m = 0.0, time_s = 0.0;  ///< of the program at its end
   [[nodiscard]] const program::Block& block() const { return forces->program->program.blocks[result->force.block]; }
 };
-/// One a block.
-[[nodiscard]] std::vector<ForcesLine> lines_of(const ForcesResult& forces);
+/// One a block, in their order.
+void each_line(const ForcesResult& forces, const std::function<void(const ForcesLine&)>& use);
+/// One of them in forces.json.
+[[nodiscard]] const io::Schema<ForcesLine>& line_table();
+/// The key of their list.
+inline constexpr const char* blocks_key = "blocks";
 /// forces.csv along a program.
 [[nodiscard]] const io::Columns<ForcesLine>& forces_columns();
 /// [forces]
