@@ -227,11 +227,7 @@ Span SweptSolid::extent(int axis) const {
   const double high = origin_[axis] + high_ * axis_[axis];
   const double least = std::min(low, high) + std::min(0.0, way_[axis]);
   const double most = std::max(low, high) + std::max(0.0, way_[axis]);
-  constexpr double rounding_m = 1e-9;
-  // Discs about the axis reach less far along it.
-  const double along = std::min(std::abs(axis_[axis]), 1.0);
-  const double reach = kind_ == Kind::ball ? radius_ : radius_ * std::sqrt(1.0 - along * along) + rounding_m;
-  return {.from = least - reach, .to = most + reach};
+  return {.from = least - radius_, .to = most + radius_};
 }
 
 double SweptSolid::silhouette_m2() const {

@@ -37,22 +37,16 @@ class LocalCuts {
   ///     reach_m, |z| <= |y| and |y| >= 1e-3 reach_m
   /// @throws InvalidInput if reach_m is not > 0
   LocalCuts(const program::Program& program, double reach_m);
-  /// Of a feed move whose tip moves; another has no neighbour. Of passes equally near the earlier block counts. The
-  /// program must still be there.
+  /// Of a feed move whose tip moves; another has no neighbour. The program must still be there.
   [[nodiscard]] LocalCut at(std::size_t block) const;
 
  private:
   using Cell = std::uint64_t;
-  using Steps = Eigen::Array<std::int64_t, 3, 1>;
-  class Nearest;
-  /// Of a place, among cells from the lowest one.
-  [[nodiscard]] Steps steps_to(const Eigen::Vector3d& place) const;
-  [[nodiscard]] static Cell key(const Steps& cell);
+  [[nodiscard]] Cell cell(const Eigen::Array3d& place) const;
 
   const program::Program& program_;
   double reach_m_;
-  double cell_m_;  ///< about as long as a block, reach_m_ at most and an eighth of it at least
-  Eigen::Vector3d lowest_m_;
+  Eigen::Array3d lowest_m_;
   std::unordered_map<Cell, std::vector<std::size_t>> blocks_;  ///< feed moves by the cells that they pass
 };
 

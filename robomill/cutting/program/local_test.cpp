@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
@@ -79,46 +78,6 @@ TEST(LocalCuts, PassesOnACylinder) {
   const LocalCut last = cuts.at(middle_of(7));
   EXPECT_EQ(last.curvature_per_m, 0.0);
   EXPECT_NEAR(last.slope_rad, 0.5 * 0.5 / 20.0, 1e-9);
-}
-
-/// The distance to the nearest pass that was cut before, of all blocks; 0: there is none.
-double nearest_before_m(const Program& program, std::size_t block, const Eigen::Matrix3d& frame, double reach_m) {
-  const Vector3d middle = 0.5 * (program.begin_of(block).tip_m + program.blocks[block].end.tip_m);
-  double nearest_m = 0.0;
-  for (std::size_t i = 0; i < block; ++i) {
-    const Vector3d from = frame.transpose() * (program.begin_of(i).tip_m - middle);
-    const Vector3d to = frame.transpose() * (program.blocks[i].end.tip_m - middle);
-    if (program.blocks[i].kind != Block::Kind::feed || from.x() * to.x() > 0.0) continue;
-    if (std::abs(to.x() - from.x()) <= 0.5 * (to - from).norm()) continue;
-    const Vector3d at = from + from.x() / (from.x() - to.x()) * (to - from);
-    const double away_m = at.norm();
-    if (std::abs(at.z()) > std::abs(at.y()) || std::abs(at.y()) < 1e-3 * reach_m || away_m > reach_m) continue;
-    if (nearest_m == 0.0 || away_m < nearest_m) nearest_m = away_m;
-  }
-  return nearest_m;
-}
-
-// Against all blocks looked at one by one: random walks over a plane, of blocks shorter and longer than the reach.
-TEST(LocalCuts, FindsTheNearestPassOfAll) {
-  constexpr double reach_m = 6e-3;
-  for (const double length_m : {0.2e-3, 2e-3, 30e-3}) {
-    Random random(3);
-    Program program;
-    Vector3d tip = Vector3d::Zero();
-    for (int i = 0; i < 300; ++i) {
-      const double turn = random.uniform(-0.6, 0.6) + (i % 20 == 0 ? 3.0 : 0.0);
-      tip += length_m * Vector3d(std::cos(turn), std::sin(turn), random.uniform(-0.05, 0.05));
-      program.blocks.push_back({.kind = Block::Kind::feed, .end = {.tip_m = tip}, .duration_s = 0.1});
-    }
-    const LocalCuts cuts(program, reach_m);
-    int found = 0;
-    for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-      const LocalCut cut = cuts.at(i);
-      EXPECT_NEAR(cut.stepover_m, nearest_before_m(program, i, cut.work_from_feed, reach_m), 1e-9) << i;
-      found += cut.stepover_m > 0.0 ? 1 : 0;
-    }
-    EXPECT_GT(found, 10) << length_m;
-  }
 }
 
 TEST(LocalCuts, PassesOutOfReachAreNone) {
