@@ -88,7 +88,8 @@ Record read_wav_record(const Path& path, double scale) {
   // In blocks, and columns that grow: what the header says of the length may be wrong.
   const auto block_frames = std::max<Eigen::Index>(1, 8192 / static_cast<Eigen::Index>(channels));
   std::vector<double> block(static_cast<std::size_t>(block_frames) * channels);
-  record.columns.assign(channels, Eigen::VectorXd(likely_frames(file)));
+  record.columns.reserve(channels);
+  while (record.columns.size() < channels) record.columns.emplace_back(likely_frames(file));
   Eigen::Index length = 0;
   sf_count_t frames = 0;
   while ((frames = sf_readf_double(file.sound.get(), block.data(), block_frames)) > 0) {
