@@ -156,8 +156,7 @@ TEST(Tools, OneThatComesBackIsReadByItsParts) {
   EXPECT_EQ(said_of("T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X1\nT4 M6\nG28\nM30\n", 4), "")
       << "mounted to be ready for the next part alone";
   EXPECT_EQ(read("T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nT4 M6\nG1 X2\nM30\n", 4).blocks.size(), 2U);
-  const std::string waits =
-      "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X5\nT4 M6\nG4 P1\nM0\nG28\nM30\n";
+  const std::string waits = "T4 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nT6 M6\nG0 X0 Y0 Z5\nG1 X5\nT4 M6\nG4 P1\nM0\nG28\nM30\n";
   EXPECT_EQ(read(waits, 4).blocks.size(), 1U) << "where the tool waits there is not known";
 }
 
