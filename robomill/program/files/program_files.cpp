@@ -28,6 +28,7 @@ namespace {
 
 constexpr std::size_t kept_remarks = 500;
 constexpr std::size_t most_listed_parts = 30;
+constexpr std::size_t most_read_parts = 12;  ///< of these, each a pass over the file
 
 constexpr Name<Machine> machine_names[] = {{"xyzac-trt", Machine::xyzac_trt},
                                            {"xyzbc-trt", Machine::xyzbc_trt},
@@ -226,7 +227,7 @@ class Walk {
       const ToolPart& part = one.part;
       const ToolChoice choice = choice_of(one);
       const bool can_choose = part.can_be_chosen();
-      const std::string contents = can_choose && again_ ? ", " + contents_of(choice) : "";
+      const std::string contents = can_choose && again_ && i < most_read_parts ? ", " + contents_of(choice) : "";
       const bool reads = !contents.starts_with(", cannot");
       if (can_choose && (!first || (reads && !first_reads))) first = choice;
       first_reads = first_reads || (can_choose && reads);
