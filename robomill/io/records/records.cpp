@@ -76,7 +76,8 @@ Eigen::Index likely_frames(const SoundFile& file) {
   std::error_code ignored;
   const std::uintmax_t bytes = std::filesystem::file_size(file.path, ignored);
   const std::uintmax_t most = most_samples_a_byte * (ignored ? 0 : bytes) / static_cast<unsigned>(file.info.channels);
-  return static_cast<Eigen::Index>(std::min<std::uintmax_t>(most, std::max<sf_count_t>(file.info.frames, 0)));
+  const auto stated = static_cast<std::uintmax_t>(std::max<sf_count_t>(file.info.frames, 0));
+  return static_cast<Eigen::Index>(std::min(most, stated));
 }
 
 Record read_wav_record(const Path& path, double scale) {

@@ -140,7 +140,7 @@ class UffRecordReader {
     for (const FileChannel& channel : channels_) names.push_back(channel.name);
     std::ranges::sort(names);
     for (std::size_t i = 0; i < channels_.size(); ++i) {
-      const auto [begin, end] = std::ranges::equal_range(names, channels_[i].name);
+      const auto [begin, end] = std::equal_range(names.begin(), names.end(), channels_[i].name);
       if (end - begin > 1) channels_[i].name += (channels_[i].name.empty() ? "" : " ") + places_[i];
     }
   }

@@ -81,6 +81,7 @@ class Faults {
  public:
   Faults(const Hit& record, const std::vector<HitSegment>& segments) : record_(record), segments_(segments) {
     std::vector<double> lengths;
+    lengths.reserve(segments.size());
     for (const HitSegment& segment : segments) lengths.push_back(static_cast<double>(segment.after));
     usual_length_ = median(lengths);
     Index shortest = record.force_n.size();

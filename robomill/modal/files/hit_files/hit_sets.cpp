@@ -135,8 +135,8 @@ std::optional<FoundHit> found_in_set(std::vector<fs::path>& files) {
   parts.reserve(files.size());
   for (const fs::path& file : files) parts.push_back(io::read_record(file));
   // Of signals alone the sharpest is the force; a name that says it stands before that.
-  std::ranges::stable_partition(files, is_named_force);
-  std::ranges::stable_partition(parts, [](const io::Record& part) { return is_named_force(part.file); });
+  std::stable_partition(files.begin(), files.end(), is_named_force);
+  std::stable_partition(parts.begin(), parts.end(), [](const io::Record& part) { return is_named_force(part.file); });
   order(files, parts);
   FoundHit hit{.format = io::format_of(files.front()),
                .si_assumed = std::ranges::any_of(parts, &io::Record::si_assumed),
