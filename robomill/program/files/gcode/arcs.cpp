@@ -133,7 +133,7 @@ Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) co
   if (centers_absolute_ && !(first && second)) {
     reject(plane_.centers, std::nullopt, "", "must both be given where centres are absolute (G90.1)");
   }
-  const Vector2d center_m = unit_m() * Vector2d(first.value_or(0.0), second.value_or(0.0));
+  Vector2d center_m = unit_m() * Vector2d(first.value_or(0.0), second.value_or(0.0));
   if (!centers_absolute_) return from + center_m;
   if (tilted_) return center_m;
   const Vector3d origin = origin_m().value_or(Vector3d::Zero());

@@ -60,7 +60,8 @@ void GcodeReader::choose_system(const Line& line) {
 
 std::optional<Vector3d> GcodeReader::offsets_m() const {
   const auto table = tables_m_.find(system_.value);
-  return table == tables_m_.end() ? std::nullopt : std::optional(table->second);
+  if (table == tables_m_.end()) return std::nullopt;
+  return table->second;
 }
 
 void GcodeReader::choose_base() {

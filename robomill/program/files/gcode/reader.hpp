@@ -349,8 +349,7 @@ class GcodeReader final : public ProgramReader {
   Said<std::optional<double>> length_;  ///< H of G43; none: off. The tool's own counts as −1
   Said<CenterPoint> center_point_;
   bool cutting_ = false;  ///< a move at feed has come
-  std::size_t cutting_line_ = 0;
-  bool by_t_ = false;  ///< T mounts the tool
+  bool by_t_ = false;     ///< T mounts the tool
   bool m6_has_come_ = false;
   Said<std::optional<double>> named_, named_cutting_;  ///< by T, while no M6 has come; the one that cut first
   std::optional<Change> second_named_;                 ///< that cuts
