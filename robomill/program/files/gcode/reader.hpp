@@ -19,6 +19,15 @@
 
 namespace robomill::program {
 
+/// What holds, and which line of G-code said so last; 0: none. No member of the reader: clang 14 then finds no
+/// assignment of std::optional<Said>.
+template <class T>
+struct Said {
+  T value = {};
+  std::size_t line = 0;
+  std::string code = {};
+};
+
 /// Reads G-code; gcode.hpp says what of it.
 class GcodeReader final : public ProgramReader {
  public:
@@ -61,13 +70,6 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
 
  private:
-  /// What holds, and which line said so last; 0: none.
-  template <class T>
-  struct Said {
-    T value = {};
-    std::size_t line = 0;
-    std::string code = {};
-  };
   /// The plane of arcs: its axes turn from first to second; normal is the third.
   struct Plane {
     Eigen::Index first = 0, second = 1, normal = 2;
