@@ -143,6 +143,7 @@ std::optional<FoundHit> found_in_set(std::vector<fs::path>& files) {
                .guess = guess_hit(side_by_side(parts))};
   if (!hit.guess.is_hit()) return std::nullopt;
   std::vector<HitGuess> apart;
+  apart.reserve(parts.size());
   for (const io::Record& part : parts) apart.push_back(guess_hit(part));
   const std::string time = common_time(apart);
   for (std::size_t i = 0; i < hit.guess.columns.size(); ++i) {

@@ -19,8 +19,8 @@
 
 namespace robomill::program {
 
-/// What holds, and which line of G-code said so last; 0: none. No member of the reader: clang 14 then finds no
-/// assignment of std::optional<Said>.
+/// What holds, and which line of G-code said so last; 0: none. Outside of the reader: of a member clang 14 finds no
+/// copy assignment of std::optional<Said>.
 template <class T>
 struct Said {
   T value = {};

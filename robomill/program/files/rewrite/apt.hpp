@@ -1,4 +1,6 @@
 #pragma once
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
