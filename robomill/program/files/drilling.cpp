@@ -71,13 +71,13 @@ double Drilling::depth_m(double i) const {
 
 double Drilling::count(double depth_m) const {
   constexpr double rounding = 1e-9;
-  double pecks = 0.0;
+  double counted = 0.0;
   std::size_t listed = 0;
-  for (; listed + 1 < pecks_m.size(); ++listed, pecks += 1.0) {
-    if (depth_m <= pecks_m[listed] * (1.0 + rounding)) return pecks + 1.0;
+  for (; listed + 1 < pecks_m.size(); ++listed, counted += 1.0) {
+    if (depth_m <= pecks_m[listed] * (1.0 + rounding)) return counted + 1.0;
     depth_m -= pecks_m[listed];
   }
-  return pecks + std::max(std::ceil(depth_m / pecks_m.back() - rounding), 1.0);
+  return counted + std::max(std::ceil(depth_m / pecks_m.back() - rounding), 1.0);
 }
 
 void add_hole(const Drilling& drilling, const DrilledHole& hole, const Pose& from, Spindle turning,

@@ -244,9 +244,9 @@ TEST(Tools, OfNx) {
                   "part.cls:6: TOOL PATH: mounts another tool than the one that has cut", "part.cls");
   expect_rejected(one + "TOOL PATH/B,TOOL,DRILL\nGOTO/2,0,0\n", {}, "The program has:\n  T4: line 2, 4 lines, 1 move",
                   "part.cls");
-  const std::string two = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
-  expect_rejected(two, {}, "\n  T4: line 2, 4 lines, 1 move, 1 s at feed\n  T5: line 7,", "part.cls");
-  EXPECT_NEAR(sums_of(read(two, 5, "part.cls")).way_mm(), 7.0, 1e-9);
+  const std::string numbered = one + "TOOL PATH/B,TOOL,DRILL\nLOAD/TOOL,5\nGOTO/2,0,0\nGOTO/9,0,0\n";
+  expect_rejected(numbered, {}, "\n  T4: line 2, 4 lines, 1 move, 1 s at feed\n  T5: line 7,", "part.cls");
+  EXPECT_NEAR(sums_of(read(numbered, 5, "part.cls")).way_mm(), 7.0, 1e-9);
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nGOHOME\nLOADTL/2\nGOTO/5,5,5\nGOTO/6,5,5\n", {},
                   "part.cls:6: LOADTL: mounts another tool", "part.cls");
   expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2\nFROM/0,0,100\nGOTO/5,5,5\n", {},
