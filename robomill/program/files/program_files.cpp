@@ -220,7 +220,8 @@ class Walk {
     bool first_reads = false;
     for (std::size_t i = 0; i < tools.size(); ++i) {
       if (i == most_listed_parts) {
-        listed += fmt::format("\n  and {} more", tools.size() - i);
+        const bool all_kept = error.count() == error.tools().size();
+        listed += fmt::format("\n  and {}{} more", all_kept ? "" : "at least ", tools.size() - i);
         break;
       }
       const NumberedPart& one = tools[i];
