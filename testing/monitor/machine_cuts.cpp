@@ -21,10 +21,6 @@ using std::numbers::pi;
 constexpr std::array<double, 3> noise_shares = {0.03, 0.1, 0.3};
 constexpr double abrupt_s = 0.1;
 
-double log_uniform(double low, double high, Random& random) {
-  return std::exp(random.uniform(std::log(low), std::log(high)));
-}
-
 std::vector<double> rotations_hz(const CleanCut& clean) {
   return {static_cast<double>(clean.speed_rad_per_s.front()) / (2.0 * pi),
           static_cast<double>(clean.speed_rad_per_s.back()) / (2.0 * pi)};
@@ -225,11 +221,11 @@ Sensors sensors_of(MachineClass kind, double rotation_hz, const PulseTrain& trai
   return out;
 }
 
-std::vector<Tone> tones_of(MachineClass kind, double level, const MachineCut& cut, Random& random) {
-  std::vector<Tone> out;
+std::vector<MachineTone> tones_of(MachineClass kind, double level, const MachineCut& cut, Random& random) {
+  std::vector<MachineTone> out;
   const std::vector<double> rotations = rotations_hz(cut.clean);
   const auto one = [&](double low, double high, double least, double most) {
-    Tone tone = draw_tone(low, high, level * log_uniform(least, most, random), rotations, random);
+    MachineTone tone = draw_tone(low, high, level * log_uniform(least, most, random), rotations, random);
     tone.swing = random.uniform() < 0.5 ? random.uniform(0.0, 0.5) : 0.0;
     tone.swing_hz = random.uniform(0.2, 3.0);
     out.push_back(tone);

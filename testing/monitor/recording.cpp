@@ -42,10 +42,11 @@ bool run(const CutModel& model, const CutPlan& plan, Physics physics, Resampler&
   out.push(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   while (!out.done()) {
     engine.step();
-    Eigen::Vector3d q = Eigen::Vector3d::Zero();
+    Eigen::Vector3d q = Eigen::Vector3d::Zero(), force = q;
     q.head<D>() = engine.displacement();
+    force.head<D>() = engine.mean_force();
     if (!(q.squaredNorm() < diverged_m * diverged_m)) return false;
-    out.push(q, Eigen::Vector3d::Zero());
+    out.push(q, force);
   }
   return true;
 }
@@ -135,6 +136,10 @@ class Coloured {
 
 }  // namespace
 
+double log_uniform(double low, double high, Random& random) {
+  return std::exp(random.uniform(std::log(low), std::log(high)));
+}
+
 Eigen::RowVector2d at_row(const CleanCut::Columns& x, double row) {
   constexpr int reach = 12;
   const auto base = static_cast<Eigen::Index>(std::floor(row));
@@ -198,12 +203,18 @@ CleanCut simulate(const CutPlan& plan) {
   clean.diverged = !fine;
   const auto before = static_cast<Eigen::Index>(plan.idle_before_s * corpus_rate_hz);
   const Eigen::Index all = before + rows + static_cast<Eigen::Index>(plan.idle_after_s * corpus_rate_hz);
-  clean.acceleration_m_per_s2.setZero(all, 2);
-  clean.forced_m_per_s2.setZero(all, 2);
-  clean.regenerated_m.setZero(all, 2);
-  clean.acceleration_m_per_s2.middleRows(before, rows) = full.acceleration_m_per_s2.leftCols<2>();
-  clean.forced_m_per_s2.middleRows(before, rows) = forced.acceleration_m_per_s2.leftCols<2>();
-  clean.regenerated_m.middleRows(before, rows) = (full.displacement_m - forced.displacement_m).leftCols<2>();
+  const auto padded = [&](const Eigen::Matrix<double, Eigen::Dynamic, 3>& x) {
+    CleanCut::Columns out = CleanCut::Columns::Zero(all, 2);
+    out.middleRows(before, rows) = x.leftCols<2>();
+    return out;
+  };
+  clean.acceleration_m_per_s2 = padded(full.acceleration_m_per_s2);
+  clean.forced_m_per_s2 = padded(forced.acceleration_m_per_s2);
+  clean.displacement_m = padded(full.displacement_m);
+  clean.forced_displacement_m = padded(forced.displacement_m);
+  clean.force_n = padded(full.force_n);
+  clean.forced_force_n = padded(forced.force_n);
+  clean.regenerated_m = clean.displacement_m - clean.forced_displacement_m;
   const double first = model.spindle.speed(0.0), start_s = static_cast<double>(before) / corpus_rate_hz;
   for (Eigen::Index i = 0; i < all; ++i) {
     const double t = static_cast<double>(i) / corpus_rate_hz - start_s;

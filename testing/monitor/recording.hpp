@@ -14,6 +14,9 @@ namespace robomill::monitor::testing {
 
 inline constexpr double corpus_rate_hz = 10240.0;
 
+/// Even in its logarithm.
+[[nodiscard]] double log_uniform(double low, double high, Random& random);
+
 /// What is true of a recording. The chatter component c(t) is taken from noise-free simulation: the acceleration of the
 /// cut (nonlinear, with loss of contact) less that of the same cut without regeneration (the forced vibration, which
 /// cannot chatter), of which the change from one revolution to the next is kept, c(φ) - c(φ - 2π): what runout makes
@@ -77,11 +80,13 @@ struct CutPlan {
 /// A plan without noise: x and y, rows of corpus_rate_hz, idle times included.
 struct CleanCut {
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-  Columns acceleration_m_per_s2;            ///< of the cut
-  Columns forced_m_per_s2;                  ///< of the same without regeneration
-  Columns regenerated_m;                    ///< displacement of the one less that of the other
-  std::vector<double> rotation_rad = {};    ///< of the spindle, from 0; one a row
-  std::vector<float> speed_rad_per_s = {};  ///< one a row
+  Columns acceleration_m_per_s2;                  ///< of the cut
+  Columns forced_m_per_s2;                        ///< of the same without regeneration
+  Columns regenerated_m;                          ///< displacement of the one less that of the other
+  Columns displacement_m, forced_displacement_m;  ///< of the one and the other
+  Columns force_n, forced_force_n;                ///< on the tool
+  std::vector<double> rotation_rad = {};          ///< of the spindle, from 0; one a row
+  std::vector<float> speed_rad_per_s = {};        ///< one a row
   std::vector<float> depth_share = {};
   bool diverged = false;
 };

@@ -59,9 +59,9 @@ Truth at_rate(const Truth& truth, double sample_rate_hz) {
   return out;
 }
 
-Tone draw_tone(double low_hz, double high_hz, double amplitude, const std::vector<double>& rotations_hz,
-               Random& random) {
-  Tone tone = {.amplitude = amplitude};
+MachineTone draw_tone(double low_hz, double high_hz, double amplitude, const std::vector<double>& rotations_hz,
+                      Random& random) {
+  MachineTone tone = {.amplitude = amplitude};
   const auto is_order = [&](double rotation_hz) {
     const double multiple = std::round(tone.frequency_hz / rotation_hz);
     return std::abs(tone.frequency_hz - multiple * rotation_hz) < std::max(2.0, 0.1 * rotation_hz);
@@ -72,10 +72,10 @@ Tone draw_tone(double low_hz, double high_hz, double amplitude, const std::vecto
   return tone;
 }
 
-void add_tones(const std::vector<Tone>& tones, double sample_rate_hz, int channels, Random& random,
+void add_tones(const std::vector<MachineTone>& tones, double sample_rate_hz, int channels, Random& random,
                std::vector<float>& samples) {
   const auto count = static_cast<std::size_t>(channels);
-  for (const Tone& tone : tones) {
+  for (const MachineTone& tone : tones) {
     for (std::size_t c = 0; c < count; ++c) {
       const double gain = tone.amplitude * random.uniform(0.3, 1.0), phase = random.uniform(0.0, 2.0 * pi);
       for (std::size_t i = 0; i < samples.size() / count; ++i) {

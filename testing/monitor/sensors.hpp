@@ -23,17 +23,17 @@ struct Sensors {
 [[nodiscard]] Truth at_rate(const Truth& truth, double sample_rate_hz);
 
 /// A tone at no multiple of rotation.
-struct Tone {
+struct MachineTone {
   double frequency_hz = 0.0, amplitude = 0.0;
   double from_s = -1e9, to_s = 1e9, fade_s = 0.1;
   double swing = 0.0, swing_hz = 1.0;  ///< of its amplitude
 };
 /// Of a frequency drawn evenly in its logarithm that keeps from all multiples of these rotations by a tenth of a
 /// rotation, and 2 Hz at least.
-[[nodiscard]] Tone draw_tone(double low_hz, double high_hz, double amplitude, const std::vector<double>& rotations_hz,
-                             Random& random);
+[[nodiscard]] MachineTone draw_tone(double low_hz, double high_hz, double amplitude,
+                                    const std::vector<double>& rotations_hz, Random& random);
 /// To every channel, with a gain of 0.3 to 1 and a phase of its own.
-void add_tones(const std::vector<Tone>& tones, double sample_rate_hz, int channels, Random& random,
+void add_tones(const std::vector<MachineTone>& tones, double sample_rate_hz, int channels, Random& random,
                std::vector<float>& samples);
 
 /// What a turning spindle shows without cutting: multiples of rotation and, of belts and gears, of a third of it, with
