@@ -24,6 +24,12 @@ StableHours::StableHours(std::uint64_t seed, double hours, int bank, int teeth)
     entry.clean = simulate(entry.plan);
     if (entry.clean.diverged || !settles(entry.plan, entry.clean)) continue;
     entry.level = reference_level(entry.plan, entry.clean);
+    // Of a long bank only what is joined is kept.
+    CleanCut& clean = entry.clean;
+    for (CleanCut::Columns* unused :
+         {&clean.displacement_m, &clean.forced_displacement_m, &clean.force_n, &clean.forced_force_n}) {
+      unused->resize(0, 2);
+    }
     bank_.push_back(std::move(entry));
   }
   noise_.resize(noise_size);
