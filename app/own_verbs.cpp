@@ -55,6 +55,7 @@ std::vector<VerbOption> monitor_options() {
                   {"auto", "f32", "i16", "csv"}),
       flag_option("live", "do not keep standard input waiting: leave out hops that come too fast"),
       flag_option("every_window", "an event each hop, not only on change"),
+      flag_option("why", "each change of state, and each window, with its test, values and thresholds"),
       flag_option("watch", "level, score, state and spectrum on standard error"),
       plain_option("record", "a folder for the seconds before each alarm, as WAV", Takes::new_folder),
       whole_option("metrics_port", "answer GET /metrics on loopback; 0: any port that is free", 0, 65535),
@@ -129,7 +130,7 @@ Verb man_verb() {
 }  // namespace
 
 std::vector<jobs::Verb> own_verbs() {
-  return {init_verb(), monitor_verb(), serve_verb(), schema_verb(), completion_verb(), man_verb()};
+  return {init_verb(), monitor_verb(), jobs::learn_verb(), serve_verb(), schema_verb(), completion_verb(), man_verb()};
 }
 
 }  // namespace robomill::app

@@ -31,6 +31,8 @@
 #include "robomill/live/inputs.hpp"
 #include "robomill/live/recorder.hpp"
 #include "robomill/live/session.hpp"
+#include "robomill/monitor/explanation.hpp"
+#include "robomill/monitor/files/machine_json.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -129,6 +131,11 @@ void print_alias(std::FILE* to, const MonitorEvent& event) {
   }
 }
 
+void print_why(std::FILE* to, const monitor::Decision& decision) {
+  const std::string why = monitor::why_text(decision.why, decision.state);
+  if (!why.empty()) fmt::print(to, "{:14}{}\n", "", why);
+}
+
 void print_event(std::FILE* to, const MonitorEvent& event) {
   const monitor::Decision& d = event.decision;
   if (event.kind == MonitorEvent::Kind::window) return;
@@ -172,6 +179,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
                  printable(event.message));
   }
   fmt::print(to, "\n");
+  if (event.explained && event.kind == MonitorEvent::Kind::state) print_why(to, d);
   std::fflush(to);
 }
 
@@ -335,6 +343,7 @@ Exit run_monitor(const jobs::VerbJob& job, const Common& common, Progress& progr
   monitor::MonitorFile file = read_config(job);
   std::atomic<bool> ended{false};
   Input input = open_input(job, file, ended);
+  monitor::load_machine(file);
   monitor::validate(file);
   const live::AdviceBasis basis = jobs::read_advice_basis(file, progress);
   if (!common.quiet) {
@@ -345,9 +354,12 @@ Exit run_monitor(const jobs::VerbJob& job, const Common& common, Progress& progr
   }
   const live::Advisor advisor(basis);
   Outlets outlets(job, common, file, input);
-  live::Session session(
-      file, {.every_window = job.flag("every_window"), .seconds = job.get("seconds", 0.0), .live = input.by_clock},
-      outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
+  live::Session session(file,
+                        {.every_window = job.flag("every_window"),
+                         .why = job.flag("why"),
+                         .seconds = job.get("seconds", 0.0),
+                         .live = input.by_clock},
+                        outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
   outlets.report_to(session);
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {

@@ -56,8 +56,9 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
   ASSERT_EQ(run.channels[0].wave.low.size(), 612);
   EXPECT_TRUE(std::isnan(run.channels[0].wave.low[300]));
   EXPECT_TRUE(std::isfinite(run.channels[0].wave.low[356]));
-  ASSERT_EQ(run.events.size(), 1U);
-  EXPECT_NE(run.events[0].find("\"message\":\"gone\""), std::string::npos) << run.events[0];
+  ASSERT_EQ(run.events.size(), 2U);
+  EXPECT_NE(run.events[0].find("\"reason\":\"learning\""), std::string::npos) << run.events[0];
+  EXPECT_NE(run.events[1].find("\"message\":\"gone\""), std::string::npos) << run.events[1];
   EXPECT_NEAR(run.stays.back().to_s, session.time_s(), 1e-3);
   const std::string page = page::report_json(monitor_page(run, file, "cut.wav"));
   for (const char* part :

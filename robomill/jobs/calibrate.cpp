@@ -38,6 +38,7 @@ std::string calibrated_toml(const CalibrateResult& result, const fs::path& place
   monitor::MonitorFile file = result.monitor;
   file.modes = from_folder_of(place, file.modes);
   file.lobes = from_folder_of(place, file.lobes);
+  file.machine = from_folder_of(place, file.machine);
   const monitor::RocPoint& verified = result.calibration.verifying.chosen;
   return monitor::monitor_toml(
       file, fmt::format("robomill calibrate {}: {} recordings, half of them to verify.\n"

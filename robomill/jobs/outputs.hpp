@@ -43,7 +43,8 @@ enum class Document {
   coefficients,
   stiffness,
   cell_check,
-  calibration
+  calibration,
+  machine
 };
 
 /// Before the work. @throws InvalidInput naming the file if this document is not written with its ending

@@ -163,6 +163,9 @@ struct Verb {
 /// Every verb that is a job, in the order of the page's buttons.
 [[nodiscard]] std::span<const Verb> verbs();
 
+/// The job that an option makes of a verb of app/: "monitor --learn". Not among verbs().
+[[nodiscard]] Verb learn_verb();
+
 /// Whether a verb needs an option beside its input.
 [[nodiscard]] bool is_required(const VerbOption& option, const std::filesystem::path& input);
 

@@ -91,12 +91,8 @@ bool Actor::observe(const monitor::Decision& decision, double time_s) noexcept {
   if (settings_.rule == ActRule::none || decision.state == State::blind) return false;
   const bool chatters = decision.state == State::chatter;
   if (settling_s_ > 0.0) {
-    settling_s_ -= passed_s;
-    if (settling_s_ <= rounding_s) {
-      settling_s_ = 0.0;
-      restart_ = chatters;
-    }
-    if (chatters) return false;
+    settling_s_ = std::max(0.0, settling_s_ - passed_s - rounding_s);
+    if (chatters && settling_s_ > 0.0) return false;
   }
   stable_for_s_ = decision.state != State::stable ? -1.0 : stable_for_s_ < 0.0 ? 0.0 : stable_for_s_ + passed_s;
   if (alarm_ && stable_for_s_ >= settings_.calm_s - rounding_s) {

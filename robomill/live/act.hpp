@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -43,10 +42,10 @@ inline constexpr Name<Command::Kind> command_names[] = {{"none", Command::Kind::
 /// The rules of [act]: decisions and their events in the order of the stream → commands. An alarm lasts from the first
 /// decision of chatter until the state has been stable for calm_s.
 ///
-/// speed: the suggested speed, once an alarm; settle_s later a detector that still reports chatter begins anew, for its
-/// comb is that of the speed before; where it detects chatter again the next speed that was not tried follows, no more
-/// often than there were suggestions. reduce: the feed to reduce_to, and back at the alarm's end. hold:
-/// whenever chatter begins. A blind monitor commands nothing: what was commanded stays, and times stand still.
+/// speed: the suggested speed, once an alarm; where chatter is still detected settle_s later, the next speed that was
+/// not tried follows, no more often than there were suggestions. reduce: the feed to reduce_to, and back at the alarm's
+/// end. hold: whenever chatter begins. A blind monitor commands nothing: what was commanded stays, and times stand
+/// still.
 class ROBOMILL_API Actor {
  public:
   /// Higher ones change nothing on a PathInterpolator.
@@ -64,8 +63,6 @@ class ROBOMILL_API Actor {
   std::optional<Command> act(monitor::MonitorEvent& event);
   /// A speed was commanded less than settle_s ago: what the detector knows of the spindle is of before.
   [[nodiscard]] bool settling() const noexcept { return settling_s_ > 0.0; }
-  /// Whether the detector is to begin anew after this decision; true once.
-  [[nodiscard]] bool take_restart() noexcept { return std::exchange(restart_, false); }
 
  private:
   [[nodiscard]] std::optional<Command> on_chatter(const monitor::MonitorEvent& event);
@@ -79,7 +76,7 @@ class ROBOMILL_API Actor {
   double programmed_rad_per_s_ = 0.0;  ///< when chatter was first detected: the feed is programmed for it
   double commanded_rad_per_s_ = 0.0;   ///< 0: none
   double feed_override_ = 1.0;
-  bool alarm_ = false, held_ = false, release_due_ = false, restart_ = false;
+  bool alarm_ = false, held_ = false, release_due_ = false;
   double observed_s_ = 0.0;
   double stable_for_s_ = -1.0;  ///< < 0: it is not
   double settling_s_ = 0.0;     ///< still

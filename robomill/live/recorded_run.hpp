@@ -57,6 +57,7 @@ struct RecordedAlarm {
   std::vector<double> line_hz = {};  ///< as MonitorEvent has it
   monitor::NoSpeed no_speed = monitor::NoSpeed::none;
   double suggested_spindle_speed_rad_per_s = NAN;  ///< NaN: none
+  monitor::Explanation why = {};                   ///< of the first one's begin; Test::none: not known
 };
 
 /// A recording as the chatter monitor processed it.

@@ -38,6 +38,7 @@ void make_blind(monitor::Decision& decision, BlindReason reason) {
   decision.chatter_frequency_hz = decision.chatter_frequency_std_hz = 0.0;
   decision.channel = 0;
   decision.synchronous = monitor::SynchronousChatter::none;
+  decision.why = {};
 }
 
 }  // namespace
@@ -197,7 +198,6 @@ void Session::process(Hop&& hop) {
     frames_ += count / channels;
     if (decision.hop == last_.hop) continue;
     decide(decision, std::exchange(compute_s_, 0.0));
-    if (actor_.take_restart() && outputs_.command) begin_anew();
   }
   if (outputs_.samples) outputs_.samples(hop.samples);
   samples_at_ = Clock::now();
@@ -230,7 +230,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   take_stall();
   const bool doubt = published_.take_doubt();
   if (load_.overloaded() && decision.state != State::chatter) make_blind(decision, BlindReason::overloaded);
-  // Against what was emitted: a detector that begins anew is stable and calls it no change.
+  // Against what was emitted: a detector that begins anew compares with a stable state that never was.
   decision.changed = decision.state != last_.state;
   const bool blind = decision.state == State::blind;
   const bool reason_news = blind && decision.reason != last_.reason;
@@ -258,6 +258,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
     event.time_s = time_s;
     event.decision = decision;
     event.compute_s = compute_s;
+    event.explained = options_.why;
     advise(event);
     return event;
   };

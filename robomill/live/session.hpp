@@ -48,6 +48,7 @@ struct SessionOutputs {
 
 struct SessionOptions {
   bool every_window = false;  ///< an event each decision, not only on change
+  bool why = false;           ///< lines of events hold why the decision is what it is
   double seconds = 0.0;       ///< of the stream, after which it ends; 0: never
   /// Samples come by the clock: where there are none for MonitorFile::timeout_s the state is blind. Of a recording
   /// none are awaited.

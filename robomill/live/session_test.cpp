@@ -28,9 +28,12 @@ using monitor::BlindReason;
 using monitor::MonitorEvent;
 using monitor::State;
 
+/// Of the published detector, which has nothing to learn: what is reported is the session's own.
 monitor::MonitorFile some_file() {
   monitor::MonitorFile file;
   file.columns.channels = {"ax"};
+  file.options.kind = monitor::Kind::energy_entropy;
+  file.options.threshold = 1e300;
   file.options.sample_rate_hz = 10'240.0;
   return file;
 }
@@ -420,6 +423,35 @@ TEST(Session, AnotherThreadSaysThatDecisionsAreStuck) {
   session.queue().close();
 }
 
+// The default detector has seen nothing calm yet: an event at once, and another one where it knows, or begins anew.
+TEST(Session, IsBlindWhileItLearns) {
+  monitor::MonitorFile file = some_file();
+  file.options.kind = monitor::Kind::comb_cusum;
+  file.options.spindle_speed_rad_per_s = 300.0;
+  Kept kept;
+  Session session(file, {}, kept.outputs());
+  Random random(1);
+  for (int i = 0; i < 125; ++i) session.process(noise(random));
+  Hop anew = noise(random);
+  anew.restarted = true;
+  session.process(std::move(anew));
+  std::vector<MonitorEvent> states;
+  for (const MonitorEvent& event : kept.events) {
+    if (event.kind == MonitorEvent::Kind::state) states.push_back(event);
+  }
+  ASSERT_EQ(states.size(), 3U);
+  EXPECT_EQ(states[0].decision.reason, BlindReason::learning);
+  EXPECT_NEAR(states[0].time_s, 0.025, 1.1e-4);
+  EXPECT_EQ(states[1].decision.state, State::stable);
+  EXPECT_NEAR(states[1].time_s, 3.0, 1.1e-4);
+  EXPECT_EQ(states[2].decision.reason, BlindReason::learning);
+  EXPECT_NEAR(states[2].time_s, 3.15, 1.1e-4);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::learning), 2.975 + 0.025, 1e-9);
+  EXPECT_EQ(session.metrics().state, 3);
+  const std::string text = session.metrics().text();
+  EXPECT_NE(text.find("\nrobomill_blind_seconds_total{reason=\"learning\"} "), std::string::npos) << text;
+}
+
 // What the monitor itself cannot judge: a gap that was filled, then a sensor that is dead.
 TEST(Session, ReportsEveryReasonToBeBlind) {
   Kept kept;
@@ -512,6 +544,7 @@ TEST(Session, AHintThatTheSignalContradictsIsReportedOnce) {
   for (const double share : {1.0, 1.1}) {
     Kept kept;
     monitor::MonitorFile file = some_file();
+    file.options.kind = monitor::Kind::comb_cusum;
     file.options.teeth = cut.teeth;
     file.options.spindle_speed_rad_per_s = share * cut.rotation_hz * 2.0 * std::numbers::pi;
     Session session(file, {}, kept.outputs());

@@ -34,4 +34,7 @@ class Detector {
   virtual void reset() noexcept = 0;
 };
 
+/// That of a monitor.
+[[nodiscard]] const Detector& detector_of(const ChatterMonitor& monitor);
+
 }  // namespace robomill::monitor

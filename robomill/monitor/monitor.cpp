@@ -10,8 +10,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/detector.hpp"
+#include "robomill/monitor/explanation.hpp"
+#include "robomill/monitor/machine.hpp"
 #include "robomill/monitor/order_detector.hpp"
-#include "robomill/monitor/orders/spectra.hpp"
+#include "robomill/monitor/orders/cut_tests.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
 #include "robomill/monitor/signal_validation.hpp"
 
@@ -30,7 +32,8 @@ constexpr Name<BlindReason> reason_names[] = {{"none", BlindReason::none},
                                               {"speed-unknown", BlindReason::speed_unknown},
                                               {"gap", BlindReason::gap},
                                               {"standstill", BlindReason::standstill},
-                                              {"overloaded", BlindReason::overloaded}};
+                                              {"overloaded", BlindReason::overloaded},
+                                              {"learning", BlindReason::learning}};
 constexpr Name<SynchronousChatter> synchronous_names[] = {{"none", SynchronousChatter::none},
                                                           {"locked", SynchronousChatter::locked},
                                                           {"period-doubling", SynchronousChatter::period_doubling}};
@@ -42,6 +45,7 @@ constexpr Name<Fault> names_of_faults[] = {{"not-finite", Fault::not_finite},
                                            {"speed-unknown", Fault::speed_unknown}};
 
 constexpr double fastest_min_speed_rpm = 100'000.0;
+constexpr double same_rate = 0.01;  // as the machine's: less than a cell at the 50th of them
 
 void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
   if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
@@ -58,6 +62,24 @@ void require_samples(const char* field, double seconds, double rate_hz, int leas
   if (samples > most) {
     throw InvalidInput(field, samples, "samples", fmt::format("must be at most {} samples long", most),
                        fmt::format("Is it in us? {} is usual", usual));
+  }
+}
+
+void require_same_signal(const Machine& machine, const MonitorOptions& options) {
+  const char* const hint = "Learn the machine with this sensor: robomill monitor --learn";
+  const double rate_hz = options.sample_rate_hz;
+  if (std::abs(machine.sample_rate_hz - rate_hz) > same_rate * rate_hz) {
+    throw InvalidInput(
+        "machine",
+        fmt::format("was learnt at {:.6g} Hz, and the samples come at {:.6g} Hz", machine.sample_rate_hz, rate_hz),
+        hint);
+  }
+  const int channels = options.channels - (options.tachometer_channel >= 0 ? 1 : 0);
+  if (machine.channels != channels) {
+    throw InvalidInput(
+        "machine",
+        fmt::format("was learnt with {} channels of vibration, and the samples have {}", machine.channels, channels),
+        hint);
   }
 }
 
@@ -95,8 +117,8 @@ void MonitorOptions::validate() const {
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
   require_positive("window_s", window_s, "s");
   require_positive("hop_s", hop_s, "s");
-  require_samples("hop_s", hop_s, sample_rate_hz, 16, "25 ms");
-  require_samples("window_s", window_s, sample_rate_hz, 32, "50 ms");
+  require_samples("hop_s", hop_s, sample_rate_hz, kind == Kind::energy_entropy ? 16 : 4, "25 ms");
+  require_samples("window_s", window_s, sample_rate_hz, kind == Kind::energy_entropy ? 32 : 8, "50 ms");
   if (window_s < hop_s) throw InvalidInput("window_s", window_s, "s", "must be at least hop_s");
   require_between("bands", bands, 2.0, 64.0, "", "must be in [2, 64]");
   if (kind == Kind::energy_entropy && !std::isfinite(threshold)) {
@@ -105,6 +127,7 @@ void MonitorOptions::validate() const {
   }
   require_positive("false_alarms_per_hour", false_alarms_per_hour, "1/h");
   require_non_negative("full_scale", full_scale, "");
+  if (machine) require_same_signal(*machine, *this);
 }
 
 std::size_t MonitorOptions::hop_samples() const noexcept {
@@ -116,7 +139,8 @@ std::size_t MonitorOptions::window_samples() const noexcept {
 }
 
 double MonitorOptions::look_back_s() const noexcept {
-  return std::max(Spectra::windows_s.front(), kind == Kind::energy_entropy ? 2.0 * window_s : 0.0);
+  if (kind == Kind::energy_entropy) return std::max(CutTests::history_s(0.0), 2.0 * window_s);
+  return CutTests::history_s(spindle_speed_rad_per_s / units::revolution);
 }
 
 struct ChatterMonitor::Parts {
@@ -124,7 +148,6 @@ struct ChatterMonitor::Parts {
       : options(o),
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
-        left_out_hops(static_cast<std::size_t>(std::ceil(o.look_back_s() / o.hop_s - 1e-9)) - 1),
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
         left_out(channels),
@@ -156,6 +179,11 @@ struct ChatterMonitor::Parts {
     return static_cast<int>(c) != options.tachometer_channel;
   }
 
+  /// After a bad hop: until all that is looked back at is good.
+  [[nodiscard]] std::size_t left_out_hops() const noexcept {
+    return static_cast<std::size_t>(std::ceil(options.look_back_s() / options.hop_s - 1e-9)) - 1;
+  }
+
   /// Faults and level of the hop, which channels are bad, and whether what is left can be judged.
   void validate(Hop& hop) noexcept {
     double power = 0.0;
@@ -183,7 +211,7 @@ struct ChatterMonitor::Parts {
       if (is_bad) ++bad;
       if (is_bad || left_out[c] > 0) {
         hop.bad_channels |= std::uint64_t{1} << c;
-        left_out[c] = is_bad ? left_out_hops : left_out[c] - 1;
+        left_out[c] = is_bad ? left_out_hops() : left_out[c] - 1;
       } else {
         ++usable;
         if ((at_limit >> c & 1U) != 0) ++usable_at_limit;
@@ -214,8 +242,7 @@ struct ChatterMonitor::Parts {
 
   MonitorOptions options;
   std::size_t channels = 1, hop_frames = 1;
-  std::size_t left_out_hops = 0;  // after a bad one: until all that is looked back at is good
-  std::vector<double> samples;    // of this hop, channel after channel
+  std::vector<double> samples;  // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
   std::vector<SignalValidation> validations;
   std::vector<std::size_t> left_out;  // hops for which each channel is still left out
@@ -264,6 +291,10 @@ void ChatterMonitor::reset() noexcept {
   parts_->detector->reset();
 }
 
+const Detector& detector_of(const ChatterMonitor& monitor) {
+  return *monitor.parts_->detector;
+}
+
 std::string_view to_string(Kind kind) {
   return name_in(kind_names, kind);
 }
@@ -278,6 +309,12 @@ std::string_view to_string(BlindReason reason) {
 }
 std::string_view to_string(SynchronousChatter kind) {
   return name_in(synchronous_names, kind);
+}
+std::string_view to_string(Test test) {
+  return name_in(test_names, test);
+}
+std::string_view to_string(Quantity quantity) {
+  return words_for(quantity).name;
 }
 std::string_view to_string(Fault fault) {
   return name_in(names_of_faults, fault);

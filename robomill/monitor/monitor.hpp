@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -41,21 +42,99 @@ enum class BlindReason {
   /// MonitorOptions::look_back_s(). A session also gives it where no samples come.
   no_signal,
   clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
-  speed_unknown,  ///< no spindle speed was given, and none can be found, or one below 300 rpm: the detector's
+  speed_unknown,  ///< no spindle speed was given, and none can be found, or one below 240 rpm: the detector's
   gap,            ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
   standstill,     ///< the spindle turns slower than MonitorOptions::min_speed_rad_per_s
-  overloaded      ///< a session's: its decisions are more than a second behind the samples, or hops were left out
+  overloaded,     ///< a session's: its decisions are more than a second behind the samples, or hops were left out
+  /// comb_cusum, of a stream that began or was reset: neither a calm nor enough time has been seen to tell a stable cut
+  /// from one that began in chatter. Lasts 0.6 s at least; then until a calm is known, and 3 s at most. A machine that
+  /// was learnt is calm that is known. An alarm may come meanwhile.
+  learning
 };
 /// Those that are one.
-inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal,     BlindReason::clipped,
-                                                BlindReason::speed_unknown, BlindReason::gap,
-                                                BlindReason::standstill,    BlindReason::overloaded};
+inline constexpr BlindReason blind_reasons[] = {
+    BlindReason::no_signal,  BlindReason::clipped,    BlindReason::speed_unknown, BlindReason::gap,
+    BlindReason::standstill, BlindReason::overloaded, BlindReason::learning};
 /// Chatter synchronous with the spindle. It is detected by the power of a multiple of rotation against what was learnt
 /// of it.
 enum class SynchronousChatter {
   none,            ///< no chatter, or not synchronous
   locked,          ///< to the rotation: at a multiple of it that is none of tooth passing
   period_doubling  ///< half way between two multiples of tooth passing (even numbers of teeth)
+};
+
+/// The tests of Kind::comb_cusum. Method: README.md.
+enum class Test : std::uint8_t {
+  none,       ///< none has anything to go by
+  dominant,   ///< one line that is no forced vibration comes to hold nearly all energy, and still grows
+  ratio,      ///< what stands beside the multiples of rotation, against these
+  family,     ///< several lines at one fraction of an order have grown: mild chatter
+  growth,     ///< a line that is no multiple of tooth passing has grown, wherever it moves
+  runaway,    ///< a line grows exponentially
+  slow_ratio  ///< a low line beside the orders of a slow spindle is as strong as they are, and lasts: arms
+};
+inline constexpr Name<Test> test_names[] = {
+    {"none", Test::none},     {"dominant", Test::dominant}, {"ratio", Test::ratio},          {"family", Test::family},
+    {"growth", Test::growth}, {"runaway", Test::runaway},   {"slow-ratio", Test::slow_ratio}};
+/// What a test compares with a threshold. Ratios are of energies. Names, words and scales: explanation.hpp.
+enum class Quantity : std::uint8_t {
+  line_share,       ///< of the strongest unforced line, of all energy
+  line_kept,        ///< of the last 12 hops, those in which it stood where it is now: 8 %, 3 % or 8 Hz above 100 Hz
+  line_rise,        ///< of its energy in 1.7 s
+  line_rise_since,  ///< the same, since 0.3 s after it began to dominate
+  above_quiet,      ///< all energy to the least of late
+  speed_belief,     ///< of the tracked speed, 0 to 1
+  anchored,  ///< the multiples of rotation against what a right speed leaves them: a fifth of all, or half of before
+  cutting,   ///< the tool cuts: above_quiet/4 or the share of the multiples of rotation/0.35, the greater
+  staying,   ///< all energy to the most of the last 0.4 s: less is the tool leaving
+  entered,   ///< s since the tool entered
+  asynchronous_ratio,  ///< of the strongest family beside the orders, to the orders
+  family_above_quiet,  ///< of that family, to the least of all energy of late
+  mains_distance,      ///< Hz, of the line to the nearest low multiple of 50 or 60 Hz: hum
+  order_change,    ///< of the order beside the line in 0.3 s, in widths of a line: an order that moves is no chatter
+  family_lines,    ///< of that family, 10 dB above the noise
+  family_growth,   ///< of that family, to its own past 2 s
+  line_growth,     ///< of a line beside the multiples of tooth passing, to its own past second
+  line_to_teeth,   ///< of that line, to the multiples of tooth passing
+  line_to_swing,   ///< of that line, to what these changed by in 0.3 s
+  line_sustained,  ///< of the line's last turn, to the strongest 25 ms of its window: less rings down after a knock
+  line_kept_up,    ///< the same of the last turn and of the one before, the less of both
+  line_spread,     ///< of that energy over the window, 1: even; knocks are not
+  line_new,        ///< of the line, to what the machine shows there without chatter
+  line_lasting,    ///< of the hops in 0.6 windows, those in which a slow spindle's line was as strong
+  other_speed,     ///< evidence for a speed at which the line is an order, beyond that for the tracked one
+  line_holding,    ///< of that line, to its most of half a window: what rings falls
+  runaway_rise,    ///< 1 while a line grows exponentially by 20/s or more
+};
+/// One of what a test asks for.
+struct Condition {
+  Quantity quantity = Quantity::line_share;
+  bool at_most = false;  ///< the value must be at most the threshold; else at least
+  float value = 0.0F, threshold = 0.0F;
+  [[nodiscard]] bool holds() const noexcept { return at_most ? value <= threshold : value >= threshold; }
+};
+/// Why a decision is what it is: of the test that holds the alarm, or came closest to one, all conditions.
+struct Explanation {
+  Test test = Test::none;
+  int hops = 0, enough_hops = 0;  ///< of the last 8 (growth: in a row) in which it held; of those an alarm takes
+  float speed_belief =
+      0.0F;  ///< in the tracked speed, 0 to 1; below 0.12 only `dominant`, `slow_ratio` and `runaway` are armed
+  int conditions = 0;
+  std::array<Condition, 14> condition = {};
+  void ask(Quantity quantity, double value, double threshold, bool at_most = false) noexcept {
+    if (conditions < static_cast<int>(condition.size())) {
+      constexpr double most = std::numeric_limits<float>::max();  // a ratio to nothing is infinite
+      const double held =
+          std::abs(value) > most ? std::copysign(std::numeric_limits<double>::infinity(), value) : value;
+      condition[static_cast<std::size_t>(conditions++)] = {quantity, at_most, static_cast<float>(held),
+                                                           static_cast<float>(threshold)};
+    }
+  }
+  [[nodiscard]] int held() const noexcept {
+    int count = 0;
+    for (int i = 0; i < conditions; ++i) count += condition[static_cast<std::size_t>(i)].holds() ? 1 : 0;
+    return count;
+  }
 };
 
 /// What is wrong with the input; a bit mask, since several may be.
@@ -67,6 +146,8 @@ enum Fault : std::uint32_t {
   wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
   speed_unknown = 32       ///< no comb was found: in air, or the tests run without
 };
+
+struct Machine;
 
 /// The least MonitorOptions::min_speed_rad_per_s.
 inline constexpr double slowest_min_speed_rad_per_s = 1.0 * units::rpm;
@@ -90,9 +171,13 @@ struct ROBOMILL_API MonitorOptions {
   /// holds for one form, unit and sensor, and calibrate() sets it.
   double threshold = std::numeric_limits<double>::quiet_NaN();
   bool alarm_below = false;  ///< energy-entropy: which side of the threshold is chatter, from calibration
-  /// comb-cusum, > 0: how long slow growth must last, a hop more for every factor of 37 fewer; 4 hops at 0.1.
+  /// comb-cusum, > 0: in how many of 8 hops a family must stand: 5 at 0.1, one more for every factor of 37
+  /// fewer, 3 to 8.
   double false_alarms_per_hour = 0.1;
   double full_scale = 0.0;  ///< at which the converter clips, >= 0: |sample| >= 0.9999 of it; 0: unknown
+  /// comb-cusum: what this machine shows without chatter (machine.hpp), of the same sample rate and channels; null: not
+  /// known.
+  std::shared_ptr<const Machine> machine = {};
   /// @throws InvalidInput naming the field
   void validate() const;
   /// Samples a hop and a window: the times, rounded.
@@ -124,9 +209,12 @@ struct Decision {
   double suggested_sample_rate_hz = 0.0;     ///< with Fault::wrong_sample_rate
   std::uint32_t faults = 0;                  ///< of Fault
   SynchronousChatter synchronous = SynchronousChatter::none;
+  Explanation why = {};                   ///< comb_cusum
   int bands = 0;                          ///< used of band_level
   std::array<float, 64> band_level = {};  ///< rms of each band, all channels [input's unit]
 };
+
+class Detector;
 
 /// Detects chatter in a stream of samples. Method and accuracy: robomill/monitor/README.md.
 ///
@@ -153,6 +241,7 @@ class ROBOMILL_API ChatterMonitor {
   void reset() noexcept;
 
  private:
+  friend const Detector& detector_of(const ChatterMonitor& monitor);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
@@ -163,6 +252,8 @@ class ROBOMILL_API ChatterMonitor {
 [[nodiscard]] ROBOMILL_API std::string_view to_string(State state);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(BlindReason reason);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(SynchronousChatter kind);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Test test);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Quantity quantity);
 /// "not-finite", …; of one bit.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Fault fault);
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double offset_drift_hz = 3.0;  // corner of the high-pass
 constexpr double patience_s = 1.0;       // for which no speed need be known
 constexpr double least_doubt_s = 1.0;    // for which a comb must be where no speed is
+// What a stream is learnt in that may have begun in chatter: at least, and where no calm is seen.
+constexpr double least_learning_s = 0.6, most_learning_s = 3.0;
 constexpr double slowest_rate = 0.4, fastest_rate = 2.5;
 
 }  // namespace
@@ -26,7 +28,8 @@ OrderDetector::OrderDetector(const MonitorOptions& options)
                .channels = static_cast<std::size_t>(options.channels),
                .teeth = options.teeth,
                .speed_std_ratio = options.speed_std_ratio,
-               .false_alarms_per_hour = options.false_alarms_per_hour}),
+               .false_alarms_per_hour = options.false_alarms_per_hour,
+               .machine = options.machine}),
       samples_(static_cast<std::size_t>(options.channels) * options.hop_samples()),
       mean_(static_cast<std::size_t>(options.channels)),
       bands_(static_cast<std::size_t>(options.bands)) {
@@ -44,7 +47,7 @@ void OrderDetector::reset() noexcept {
   orders_.reset();
   std::ranges::fill(mean_, 0.0);
   first_ = true;
-  unknown_s_ = doubt_s_ = suggested_rate_hz_ = 0.0;
+  seen_s_ = unknown_s_ = doubt_s_ = suggested_rate_hz_ = 0.0;
 }
 
 void OrderDetector::high_pass(const Hop& hop) noexcept {
@@ -85,6 +88,7 @@ void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
   const bool still = hop.still || rests_;
   high_pass(hop);
   const CutTests::Verdict orders = orders_.step(samples_, hop.frames, bad_channels, still);
+  decision.why = orders.why;
   decision.threshold = 1.0;
   decision.score = orders.score;
   decision.state = orders.chatter ? State::chatter : orders.score > 0.0 ? State::transition : State::stable;
@@ -100,6 +104,7 @@ void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
   } else {
     report_speed(orders, decision);
   }
+  report_learning(bad_channels, orders, decision);
   report_bands(bad_channels, decision);
 }
 
@@ -107,20 +112,29 @@ void OrderDetector::report_speed(const CutTests::Verdict& orders, Decision& deci
   decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
   decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
   if (!orders.known) decision.faults |= speed_unknown;
-  // Of the orders of so slow a spindle nothing can be said, whether or not it is known.
-  unknown_s_ = hint_hz_ >= lowest_rotation_hz || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
+  unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
   if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
   doubt_the_sample_rate(orders, decision);
 }
 
+// Until then a stream that begins in chatter looks like one that is stable. Samples that are lost teach nothing.
+void OrderDetector::report_learning(std::uint64_t bad_channels, const CutTests::Verdict& orders,
+                                    Decision& decision) noexcept {
+  const std::uint64_t all = ~std::uint64_t{0} >> (64 - options_.channels);
+  if ((~bad_channels & all) != 0) seen_s_ += options_.hop_s;
+  const double seen_s = seen_s_ + 1e-9;
+  const bool learning = seen_s < least_learning_s || (!orders.calm_known && seen_s < most_learning_s);
+  if (learning && decision.reason == BlindReason::none) decision.reason = BlindReason::learning;
+}
+
 // Where the comb of the speed given is not there, but another: at another sample rate it would be that one.
 void OrderDetector::doubt_the_sample_rate(const CutTests::Verdict& orders, Decision& decision) noexcept {
-  if (orders.known || hint_hz_ == 0.0) doubt_s_ = suggested_rate_hz_ = 0.0;
+  if (orders.explained || hint_hz_ == 0.0) doubt_s_ = suggested_rate_hz_ = 0.0;
   if (orders.comb_hz > 0.0) doubt_s_ += options_.hop_s;
   // Most often it is tooth passing that repeats.
   for (const double rotation_hz : {orders.comb_hz / std::max(1, options_.teeth), orders.comb_hz}) {
     const double ratio = hint_hz_ > 0.0 ? rotation_hz / hint_hz_ : 1.0;
-    if (std::abs(ratio - 1.0) < SpeedPosterior::reach || ratio < slowest_rate || ratio > fastest_rate) continue;
+    if (std::abs(ratio - 1.0) < SpeedTracker::reach || ratio < slowest_rate || ratio > fastest_rate) continue;
     if (doubt_s_ >= least_doubt_s) suggested_rate_hz_ = options_.sample_rate_hz / ratio;
     break;
   }

@@ -16,11 +16,13 @@ class OrderDetector final : public Detector {
   void decide(const Hop& hop, Decision& decision) noexcept override;
   void set_spindle_speed(double rad_per_s) noexcept override;
   void reset() noexcept override;
+  [[nodiscard]] const CutTests& orders() const noexcept { return orders_; }
 
  private:
   void count_pulses(const Hop& hop) noexcept;
   void high_pass(const Hop& hop) noexcept;
   void report_speed(const CutTests::Verdict& orders, Decision& decision) noexcept;
+  void report_learning(std::uint64_t bad_channels, const CutTests::Verdict& orders, Decision& decision) noexcept;
   void report_bands(std::uint64_t bad_channels, Decision& decision) noexcept;
   void doubt_the_sample_rate(const CutTests::Verdict& orders, Decision& decision) noexcept;
 
@@ -33,6 +35,7 @@ class OrderDetector final : public Detector {
   double hint_hz_ = 0.0;        // 0: none
   bool first_ = true;
   bool rests_ = false;              // by pulses
+  double seen_s_ = 0.0;             // of samples in which a channel could be used
   double unknown_s_ = 0.0;          // for which neither a speed is given nor a comb found
   double doubt_s_ = 0.0;            // for which a comb has been there that the hint does not explain
   double suggested_rate_hz_ = 0.0;  // 0: none

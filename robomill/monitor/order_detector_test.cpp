@@ -58,7 +58,8 @@ TEST(OrderDetector, DetectsATonesGrowthOnceAndItsEnd) {
         EXPECT_NEAR(d.chatter_frequency_hz, chatter, 1.0);
         EXPECT_NEAR(d.spindle_speed_rad_per_s, turn * rotation, 1e-3 * turn * rotation);
       }
-      if (d.time_s > 3.6) {
+      // 0.3 s of the window, 0.3 s until an alarm ends.
+      if (d.time_s > 3.8) {
         EXPECT_EQ(d.state, State::stable) << d.time_s;
       }
     }
@@ -108,9 +109,8 @@ TEST(OrderDetector, CorrectsAHintThatIsATenthOff) {
       cut.seed = static_cast<std::uint64_t>(run) + 1;
       for (const Decision& d : decisions_of(options_for(cut, hint_off), vibration(cut))) {
         EXPECT_NE(d.state, State::chatter) << cut.rotation_hz << " " << hint_off << " " << d.time_s;
-        if (d.time_s < 0.7) continue;
+        if (d.time_s < 1.0) continue;
         EXPECT_NEAR(d.spindle_speed_rad_per_s / (turn * cut.rotation_hz), 1.0, 2e-3) << hint_off << " " << d.time_s;
-        EXPECT_LT(d.spindle_speed_std_rad_per_s, 0.01 * d.spindle_speed_rad_per_s);
         EXPECT_FALSE(d.faults & speed_unknown) << d.time_s;
       }
     }
@@ -118,15 +118,21 @@ TEST(OrderDetector, CorrectsAHintThatIsATenthOff) {
 }
 
 TEST(OrderDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
-  const SyntheticCut nothing{.seconds = 3.0};
+  const SyntheticCut nothing{.seconds = 4.0};
   Random random(2);
   std::vector<float> air(static_cast<std::size_t>(nothing.seconds * nothing.sample_rate_hz));
   for (float& x : air) x = static_cast<float>(random.normal());
   MonitorOptions options = options_for(nothing);
-  for (const Decision& d : decisions_of(options, air)) EXPECT_EQ(d.state, State::stable) << d.time_s;
+  for (const Decision& d : decisions_of(options, air)) {
+    if (d.time_s > 2.99) {
+      EXPECT_EQ(d.state, State::stable) << d.time_s;
+    } else {
+      EXPECT_EQ(d.reason, BlindReason::learning) << d.time_s;
+    }
+  }
   options.spindle_speed_rad_per_s = 0.0;
   for (const Decision& d : decisions_of(options, air)) {
-    EXPECT_EQ(d.reason, d.time_s < 0.99 ? BlindReason::none : BlindReason::speed_unknown) << d.time_s;
+    EXPECT_EQ(d.reason, d.time_s < 0.99 ? BlindReason::learning : BlindReason::speed_unknown) << d.time_s;
   }
   // A hint ends it at once, and its loss begins it anew.
   ChatterMonitor monitor(options);
@@ -138,7 +144,7 @@ TEST(OrderDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
   EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
   EXPECT_EQ(listen().reason, BlindReason::speed_unknown);
   monitor.reset();
-  EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
+  EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::learning);
 }
 
 /// A spindle at rest for half a second, and then a cut at 9,000 rpm that chatters from 1 s on.
@@ -169,7 +175,9 @@ TEST(OrderDetector, AlarmsInTimeAfterAStandstill) {
       monitor.set_spindle_speed((rests ? rest_rpm : 9000.0) * units::rpm);
       decisions.push_back(monitor.push(std::span(x).subspan(at, block)));
       EXPECT_EQ(decisions.back().reason == BlindReason::standstill, rests) << decisions.back().time_s;
-      EXPECT_EQ(decisions.back().state == State::blind, rests) << decisions.back().time_s;
+      const bool learning = !rests && decisions.back().time_s < 0.59;
+      EXPECT_EQ(decisions.back().reason == BlindReason::learning, learning) << decisions.back().time_s;
+      EXPECT_EQ(decisions.back().state == State::blind, rests || learning) << decisions.back().time_s;
     }
     EXPECT_GT(first_alarm_s(decisions), 1.0) << rest_rpm;
     EXPECT_LT(first_alarm_s(decisions), 1.4) << rest_rpm;
@@ -256,7 +264,8 @@ TEST(OrderDetector, FindsTheCombOfACutWithoutAHint) {
   MonitorOptions options = options_for(cut);
   options.spindle_speed_rad_per_s = 0.0;
   const std::vector<Decision> decisions = decisions_of(options, vibration(cut));
-  for (const Decision& d : decisions) EXPECT_NE(d.state, State::blind) << d.time_s;
+  for (const Decision& d : decisions)
+    EXPECT_TRUE(d.state != State::blind || d.reason == BlindReason::learning) << d.time_s;
   EXPECT_GT(first_alarm_s(decisions), 2.0);
   EXPECT_LT(first_alarm_s(decisions), 2.5);
 }
@@ -426,15 +435,21 @@ TEST(OrderDetector, DetectsSynchronousChatter) {
   }
 }
 
-// A face mill whose tooth passing can be told apart, but not its orders: chatter three times as strong is not found, so
-// that such a cut must not look stable.
-TEST(OrderDetector, IsBlindBelowTheSpeedWhoseOrdersCanBeToldApart) {
-  for (const double rpm : {250.0, 301.0}) {
-    const SyntheticCut cut{.rotation_hz = rpm / 60.0, .teeth = 10, .chatter_hz = 300.0, .chatter = 3.0};
-    for (const Decision& d : decisions_of(options_for(cut), vibration(cut))) {
-      if (std::abs(d.time_s - 1.0) < 0.05) continue;
-      EXPECT_EQ(d.reason == BlindReason::speed_unknown, rpm < 300.0 && d.time_s > 1.0 && d.state != State::chatter)
-          << rpm << " " << d.time_s;
+// Slower than eight turns in the longest window only the tests remain that need no orders: they judge, so the monitor
+// is not blind, and the explanation has no belief in a speed.
+TEST(OrderDetector, JudgesASlowSpindleByItsLineAlone) {
+  for (const double rpm : {120.0, 200.0}) {
+    SyntheticCut cut{.rotation_hz = rpm / 60.0, .teeth = 1, .chatter_hz = 97.3, .growth_per_s = 4.0, .chatter = 6.0};
+    cut.sample_rate_hz = 2048.0;
+    cut.starts_s = 0.5;
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
+    EXPECT_GT(first_alarm_s(decisions), 1.5) << rpm;
+    for (const Decision& d : decisions) {
+      EXPECT_NE(d.reason, BlindReason::speed_unknown);
+      EXPECT_EQ(d.why.speed_belief, 0.0F);
+      if (d.state != State::chatter) continue;
+      EXPECT_EQ(d.why.test, monitor::Test::dominant);
+      EXPECT_NEAR(d.chatter_frequency_hz, cut.chatter_hz, 1.0);
     }
   }
 }

@@ -248,7 +248,8 @@ std::vector<MachineTone> tones_of(MachineClass kind, double level, const Machine
 }
 
 /// Low-pass noise of a room, above the microphone's own; then 16 bits.
-void add_room(double level, double sample_rate_hz, int channels, Random& random, std::vector<float>& samples) {
+void add_room(double level, double sample_rate_hz, int channels, Random& random, std::vector<float>& samples,
+              double& gain) {
   const auto count = static_cast<std::size_t>(channels);
   const double keep = std::exp(-2.0 * pi * 300.0 / sample_rate_hz), drive = std::sqrt(1.0 - keep * keep);
   double room = 0.0, most = 1e-300;
@@ -260,7 +261,8 @@ void add_room(double level, double sample_rate_hz, int channels, Random& random,
     }
   }
   const double scale = random.uniform(0.2, 0.9) / most;
-  for (float& s : samples) s = static_cast<float>(std::round(scale * static_cast<double>(s) * 32768.0) / 32768.0);
+  if (gain == 0.0) gain = scale;
+  for (float& s : samples) s = static_cast<float>(std::round(gain * static_cast<double>(s) * 32768.0) / 32768.0);
 }
 
 std::vector<double> rotation_of(const std::vector<float>& speed_rad_per_s, double sample_rate_hz, double first_rad) {
@@ -273,7 +275,8 @@ std::vector<double> rotation_of(const std::vector<float>& speed_rad_per_s, doubl
   return out;
 }
 
-void record(MachineClass kind, const PulseTrain& train, Random& random, MachineCut& cut) {
+/// @param anew  where not null, draws what differs from one recording of a machine to the next; nothing is cut then
+void record(MachineClass kind, const PulseTrain& train, Random& random, MachineCut& cut, Random* anew = nullptr) {
   RecordedCut& out = cut.recorded;
   const double level = reference_level(cut.plan, cut.clean);
   const double noise = noise_shares.at(static_cast<std::size_t>(out.noise));
@@ -284,7 +287,13 @@ void record(MachineClass kind, const PulseTrain& train, Random& random, MachineC
       .unbalance = turns_alone ? 0.0 : random.uniform(0.01, 0.1),
       .gain_swing = random.uniform(0.0, 0.15),
       .knocks_per_s = kind == MachineClass::air ? random.uniform(0.3, 2.0) : random.uniform(0.1, 0.6)};
-  const std::vector<float> two = disturbed(cut.plan, cut.clean, disturbance, random);
+  std::vector<float> two = disturbed(cut.plan, cut.clean, disturbance, random);
+  if (anew != nullptr) {
+    CleanCut air = cut.clean;
+    air.acceleration_m_per_s2.setZero();
+    std::ranges::fill(air.depth_share, 0.0F);
+    two = disturbed(cut.plan, air, disturbance, *anew);
+  }
   const double fastest_hz = std::max(rotations_hz(cut.clean)[0], cut.plan.speed_rad_per_s() / (2.0 * pi));
   const Sensors sensors = sensors_of(kind, fastest_hz, train, random);
   out.sample_rate_hz = sensors.sample_rate_hz;
@@ -304,7 +313,8 @@ void record(MachineClass kind, const PulseTrain& train, Random& random, MachineC
     const std::vector<double> rotation = rotation_of(out.truth.speed_rad_per_s, out.sample_rate_hz, 0.0);
     add_orders(orders, rotation, out.truth.speed_rad_per_s, out.channels, random, out.samples);
   }
-  if (kind == MachineClass::microphone) add_room(noise * level, out.sample_rate_hz, out.channels, random, out.samples);
+  if (kind == MachineClass::microphone)
+    add_room(noise * level, out.sample_rate_hz, out.channels, random, out.samples, cut.gain);
   if (kind == MachineClass::pulses) cut.upward_edges = add_tachometer(out, train, random);
 }
 
@@ -347,13 +357,15 @@ int add_tachometer(RecordedCut& cut, const PulseTrain& train, Random& random) {
   return edges;
 }
 
-MachineCut draw_machine_cut(MachineClass kind, std::uint64_t seed) {
-  Random random(seed, 2000 + static_cast<std::uint64_t>(kind));
+namespace {
+
+/// All but the recording, for which `random` is left as it is then.
+MachineCut draw_unrecorded(MachineClass kind, std::uint64_t seed, PulseTrain& train, Random& random) {
   const bool chatter = kind != MachineClass::air && seed % 2 == 1;
   MachineCut out;
   out.recorded.kind = name_in(machine_class_names, kind);
   out.recorded.noise = static_cast<int>(seed / 2 % 3);
-  const PulseTrain train = kind == MachineClass::pulses ? train_of(seed, random) : PulseTrain{};
+  if (kind == MachineClass::pulses) train = train_of(seed, random);
   const bool modelled = kind == MachineClass::drifting || kind == MachineClass::hopping ||
                         (kind == MachineClass::aliased && seed % 4 == 1);
   if (kind == MachineClass::air) {
@@ -364,12 +376,49 @@ MachineCut draw_machine_cut(MachineClass kind, std::uint64_t seed) {
     simulate_cut(kind, chatter, train.pulses_per_revolution, random, out);
   }
   if (kind == MachineClass::run_up_down) run_up_and_down(random, out);
-  record(kind, train, random, out);
+  return out;
+}
+
+void add_hint(MachineClass kind, Random& random, MachineCut& out) {
   out.recorded.teeth = out.plan.teeth();
   const auto speed = static_cast<double>(
       out.clean
           .speed_rad_per_s[kind == MachineClass::air ? 0 : static_cast<std::size_t>(out.entry_s * corpus_rate_hz)]);
   out.recorded.hint_rad_per_s = speed * (random.uniform() < 0.2 ? 1.0 : 1.0 + random.uniform(-0.05, 0.05));
+}
+
+}  // namespace
+
+MachineCut draw_machine_cut(MachineClass kind, std::uint64_t seed) {
+  Random random(seed, 2000 + static_cast<std::uint64_t>(kind));
+  PulseTrain train;
+  MachineCut out = draw_unrecorded(kind, seed, train, random);
+  record(kind, train, random, out);
+  add_hint(kind, random, out);
+  return out;
+}
+
+MachineWithAir machine_with_air(MachineClass kind, std::uint64_t seed, int recordings) {
+  Random random(seed, 2000 + static_cast<std::uint64_t>(kind));
+  PulseTrain train;
+  const MachineCut drawn = draw_unrecorded(kind, seed, train, random);
+  MachineWithAir out;
+  double gain = 0.0;
+  for (int i = 0; i <= recordings; ++i) {
+    MachineCut one = drawn;
+    one.gain = gain;
+    Random same = random;
+    Random anew(seed, 3000 + static_cast<std::uint64_t>(i));
+    record(kind, train, same, one, i == 0 ? nullptr : &anew);
+    gain = one.gain;
+    add_hint(kind, same, one);
+    if (i == 0) {
+      out.cut = std::move(one.recorded);
+    } else {
+      one.recorded.truth.chatter = false;
+      out.air.push_back(std::move(one.recorded));
+    }
+  }
   return out;
 }
 

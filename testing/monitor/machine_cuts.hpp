@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "robomill/base/names.hpp"
 #include "testing/monitor/recording.hpp"
@@ -49,8 +50,17 @@ struct MachineCut {
   double entry_s = 0.0;  ///< first contact; NaN: none
   Truth at_corpus_rate;  ///< of `clean`: nothing folded
   int upward_edges = 0;  ///< of the tachometer's channel, as its angle has them
+  double gain = 0.0;     ///< of a microphone; 0: by its loudest sample
 };
 [[nodiscard]] MachineCut draw_machine_cut(MachineClass kind, std::uint64_t seed);
+
+/// A cut, and other recordings of the same machine with the same sensors: the spindle turns as in the cut and nothing
+/// is cut. Its tones and drives are the cut's, noise and knocks are drawn anew.
+struct MachineWithAir {
+  RecordedCut cut;
+  std::vector<RecordedCut> air;
+};
+[[nodiscard]] MachineWithAir machine_with_air(MachineClass kind, std::uint64_t seed, int recordings);
 
 /// Where a converter without a filter shows a frequency: its distance to the nearest multiple of the rate.
 [[nodiscard]] double folded_hz(double frequency_hz, double rate_hz);

@@ -1,5 +1,6 @@
 #pragma once
 // Sums of sines and their spectra, for tests.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -41,11 +42,17 @@ inline std::vector<Tone> cut_of(double rotation_hz, int teeth, Random& random, d
   return out;
 }
 
+inline constexpr std::array usual_windows_s = {0.3, 0.15};
+
+inline void transform_all(Spectra& spectra) {
+  for (std::size_t w = 0; w < usual_windows_s.size(); ++w) spectra.transform(w);
+}
+
 /// Spectra of one channel after all samples.
 inline Spectra spectra_of(std::span<const float> samples, double rate_hz) {
-  Spectra out(rate_hz, 1);
+  Spectra out(rate_hz, 1, usual_windows_s);
   out.push(samples, samples.size());
-  out.transform();
+  transform_all(out);
   return out;
 }
 

@@ -11,6 +11,19 @@
 #include "robomill/monitor/files/calibration_json.hpp"
 
 namespace robomill::page {
+namespace {
+
+/// Of the test of the ratio, at an amplitude of chatter.
+monitor::Explanation sample_why(double grown, int hops) {
+  monitor::Explanation why{.test = monitor::Test::ratio, .hops = hops, .enough_hops = 6, .speed_belief = 0.41F};
+  why.ask(monitor::Quantity::asynchronous_ratio, grown * grown, 0.2);
+  why.ask(monitor::Quantity::family_above_quiet, 20.0 * grown, 1.0);
+  why.ask(monitor::Quantity::order_change, 0.001, 0.005, true);
+  why.ask(monitor::Quantity::entered, 0.9, 0.4);
+  return why;
+}
+
+}  // namespace
 
 std::string sample_monitor(const std::string& text) {
   const auto named = [&](const char* own) { return text.empty() ? std::string(own) : text; };
@@ -60,11 +73,14 @@ std::string sample_monitor(const std::string& text) {
     decision.score = decision.state == State::chatter ? 12.0 + 4.0 * grown : 2.0 + 15.0 * grown;
     decision.chatter_frequency_hz = decision.state == State::chatter ? chatter_hz + 0.2 * random.normal() : 0.0;
     decision.chatter_frequency_std_hz = decision.state == State::chatter ? 0.6 : 0.0;
+    decision.why = decision.state == State::blind ? monitor::Explanation()
+                                                  : sample_why(grown, decision.state == State::chatter ? 6 : 2);
     recorder.add(decision, 180e-6);
     if (decision.state == before) continue;
     monitor::MonitorEvent event;
     event.time_s = decision.time_s;
     event.decision = decision;
+    event.explained = true;
     if (decision.state == State::chatter) {
       event.mode = {8};
       event.suggested_spindle_speed_rad_per_s = 3416.0 * std::numbers::pi / 30.0;

@@ -119,6 +119,8 @@ export type Monitor = Documents['monitor'];
 export type MonitorEvent = Monitor['events'][number];
 /** Alarms of about one frequency that follow each other; of their frequencies chatter_frequency_hz is the surest. */
 export type MonitorAlarm = Monitor['alarms'][number];
+/** Why the monitor decided as it did. */
+export type MonitorWhy = NonNullable<MonitorAlarm['why']>;
 export type MonitorStay = Monitor['stays'][number];
 export type MonitorState = MonitorStay['state'];
 /** Why no speed is suggested. */

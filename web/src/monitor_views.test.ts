@@ -19,6 +19,7 @@ const alarm: MonitorAlarm = {
   suggested_spindle_speed_rpm: 3416,
   line_frequencies_hz: [],
   no_speed: null,
+  why: null,
 };
 
 const sample = sampleReport().monitor!;
@@ -62,13 +63,14 @@ describe('what was found, in words', () => {
     }
   });
   it('has words for every reason', () => {
-    expect(['no-signal', 'clipped', 'speed-unknown', 'gap', 'standstill', 'overloaded', 'none', 'moon'].map(reasonText)).toEqual([
+    expect(['no-signal', 'clipped', 'speed-unknown', 'gap', 'standstill', 'overloaded', 'learning', 'none', 'moon'].map(reasonText)).toEqual([
       'no usable signal',
       'signal at the limit of its converter',
       'spindle speed unknown',
       'samples lost',
       'the spindle stands still',
       'the monitor was too slow for the samples',
+      'the monitor has not seen a calm yet',
       'reason unknown',
       'moon',
     ]);

@@ -12,6 +12,7 @@ const reasonTexts: Record<string, string> = {
   gap: 'samples lost',
   standstill: 'the spindle stands still',
   overloaded: 'the monitor was too slow for the samples',
+  learning: 'the monitor has not seen a calm yet',
   none: 'reason unknown',
 };
 

@@ -295,6 +295,7 @@ it('shows what the monitor detected', () => {
   for (const part of ['<strong>Chatter</strong> for 1.60 s in 2 alarms', '682 to 696', 'mode 8', 'Alarms by frequency', '9 events, one by one', '3 recordings, 2 classified wrongly', 'missed', 'false']) {
     expect(page()).toContain(part);
   }
+  for (const part of ['by ratio, 6 of 6 hops', 'closest: ratio, 2 of 6 hops', 'energy beside the orders, to theirs', 'at most 0.005']) expect(page()).toContain(part);
   const monitor = report.monitor!;
   Object.assign(monitor, { alarms: [], alarm_count: 0, state_times: [{ state: 'stable', reason: null, duration_s: 4 }] });
   expect(page()).toContain('<strong>No alarm</strong> in the 4.00 s that were judged.');

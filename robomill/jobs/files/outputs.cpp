@@ -43,7 +43,7 @@ struct Endings {
   const char* rule;
 };
 constexpr Format none = Format::json;
-constexpr std::array<Endings, 12> endings = {
+constexpr std::array<Endings, 13> endings = {
     {{Document::frfs,
       {Format::uff, Format::csv, Format::text, Format::mat},
       "FRFs are written as .uff, .csv, .txt, .mat or .json"},
@@ -63,7 +63,8 @@ constexpr std::array<Endings, 12> endings = {
       {Format::csv, Format::toml, none, none},
       "joint stiffness is written as .csv, .json or as .toml, a line for cell.toml"},
      {Document::cell_check, {none, none, none, none}, "a cell's check is written as .json"},
-     {Document::calibration, {Format::toml, none, none, none}, "a calibrated detector is written as .toml or .json"}}};
+     {Document::calibration, {Format::toml, none, none, none}, "a calibrated detector is written as .toml or .json"},
+     {Document::machine, {none, none, none, none}, "a machine is written as .json"}}};
 
 }  // namespace
 

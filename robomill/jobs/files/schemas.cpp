@@ -27,6 +27,7 @@
 #include "robomill/modal/files/frf_schema.hpp"
 #include "robomill/modal/files/hits_schema.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
+#include "robomill/monitor/files/machine_schema.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 #include "robomill/path/files/motion_json.hpp"
 #include "robomill/path/files/smooth_object.hpp"
@@ -193,6 +194,7 @@ const std::vector<Entry>& documents() {
                                    &recordings_table().info(),
                                    &assembly_table().info(),
                                    &monitor::calibration_table().info(),
+                                   &monitor::machine_table().info(),
                                    &coupling::joint_table().info(),
                                    &robot::stiffness_table().info(),
                                    &modal::frf_table().info(),

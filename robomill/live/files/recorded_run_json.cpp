@@ -7,6 +7,7 @@
 
 #include "robomill/modal/files/mode_schema.hpp"
 #include "robomill/monitor/files/event_schema.hpp"
+#include "robomill/monitor/files/explanation_schema.hpp"
 #include "robomill/signal/files/bands_json.hpp"
 
 namespace robomill::live {
@@ -130,6 +131,10 @@ const Schema<RecordedAlarm>& alarm_table() {
             key("line_frequencies_hz", &Alarm::line_hz, "what a line that was measured folded may be").exact(),
             key("no_speed", &Alarm::no_speed, monitor::no_speed_names, "why no speed is suggested").nullable()};
         add_rows(rows, modal::mode_keys<Alarm>("that chatters"));
+        rows.push_back(key(
+                           "why", [](const Alarm& alarm) { return monitor::known(alarm.why); },
+                           monitor::explanation_table(), "the first one began; none: the detector does not say")
+                           .nullable());
         return rows;
       }(),
       Use::written);

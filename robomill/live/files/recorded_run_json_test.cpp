@@ -30,6 +30,8 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   decision.state = monitor::State::chatter;
   decision.chatter_frequency_hz = 440.0;
   decision.chatter_frequency_std_hz = 0.5;
+  decision.why = {.test = monitor::Test::ratio, .hops = 6, .enough_hops = 6};
+  decision.why.ask(monitor::Quantity::asynchronous_ratio, 0.31, 0.2);
   decision.spindle_speed_rad_per_s = 0.0;
   decision.time_s = 1.0;
   recorder.add(decision, 2e-4);
@@ -92,6 +94,8 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   EXPECT_TRUE(alarm["suggested_spindle_speed_rpm"].is_null());
   EXPECT_EQ(alarm["no_speed"], "ambiguous-alias");
   EXPECT_EQ(alarm["line_frequencies_hz"], (std::vector<double>{440.0, 560.0}));
+  EXPECT_EQ(alarm["why"]["test"], "ratio");
+  EXPECT_EQ(alarm["why"]["conditions"][0]["value"], 0.31);
   EXPECT_TRUE(json["teeth"].is_null());
   EXPECT_EQ(json["events"][1]["mode"], 8);
   EXPECT_TRUE(json["events"][1]["chatter_frequency_hz"].is_null());

@@ -6,6 +6,7 @@
 namespace robomill::live {
 
 void LastingAlarm::note(const monitor::Decision& decision, const std::vector<std::string>& channels) {
+  if (alarm.why.test == monitor::Test::none) alarm.why = decision.why;
   if (decision.synchronous != monitor::SynchronousChatter::none) alarm.synchronous = decision.synchronous;
   const double frequency_hz = decision.chatter_frequency_hz;
   if (!(frequency_hz > 0.0)) return;

@@ -13,7 +13,7 @@ struct LastingAlarm {
   RecordedAlarm alarm = {};     ///< its std is infinite while that of its frequency is not known
   double advised_std_hz = NAN;  ///< of the frequency that the advice is for
 
-  /// Frequencies and the surest of them.
+  /// Why it began; frequencies and the surest of them.
   /// @param channels  their names
   void note(const monitor::Decision& decision, const std::vector<std::string>& channels);
   /// The advice for the surest frequency. False: there is none, or one for a surer frequency stays.

@@ -10,6 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_schema.hpp"
 #include "robomill/monitor/files/event_schema.hpp"
+#include "robomill/monitor/files/explanation_schema.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -115,6 +116,17 @@ std::vector<Row<MonitorEvent>> own_keys() {
       where([](const Event& event) { return !event.message.empty(); }, key("message", &Event::message, "for people"))};
 }
 
+Row<MonitorEvent> why_key() {
+  using Event = MonitorEvent;
+  const auto decides = [](const Event& event) {
+    const bool of_decision = event.kind == Event::Kind::state || event.kind == Event::Kind::window;
+    return event.explained && of_decision && known(event.decision.why) != nullptr;
+  };
+  return where(decides, key(
+                            "why", [](const Event& event) { return known(event.decision.why); }, explanation_table(),
+                            "with `--why`, of states and windows"));
+}
+
 /// Of names of files whatever their bytes.
 std::string line_of(const io::Json& json) {
   return io::plain_text(json) + '\n';
@@ -158,6 +170,7 @@ const io::Schema<MonitorEvent>& event_table() {
         add_rows(rows, chatter_keys());
         add_rows(rows, advice_keys());
         add_rows(rows, own_keys());
+        rows.push_back(why_key());
         return rows;
       }(),
       io::Use::written);

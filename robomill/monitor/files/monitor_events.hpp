@@ -61,6 +61,7 @@ struct MonitorEvent {
   std::uint64_t count = 0;   ///< of streams: how many
   std::string message = {};  ///< for people
   std::string file = {};     ///< of recordings
+  bool explained = false;    ///< of states and windows: the line holds Decision::why
 };
 
 inline constexpr Name<MonitorEvent::Kind> event_kind_names[] = {{"state", MonitorEvent::Kind::state},

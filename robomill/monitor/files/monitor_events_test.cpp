@@ -69,6 +69,42 @@ TEST(MonitorEvents, HoldWhatIsUnknownAsNull) {
   EXPECT_TRUE(json["line_frequencies_hz"].empty());
 }
 
+TEST(MonitorEvents, SayWhyWhereTheyAreAskedTo) {
+  MonitorEvent event;
+  Explanation& why = event.decision.why;
+  why = {.test = monitor::Test::ratio, .hops = 5, .enough_hops = 6, .speed_belief = 0.41F};
+  why.ask(Quantity::asynchronous_ratio, 0.31, 0.2);
+  why.ask(Quantity::above_quiet, std::numeric_limits<double>::infinity(), 10.0);
+  why.ask(Quantity::order_change, 0.01, 0.005, true);
+  EXPECT_FALSE(nlohmann::json::parse(event_line(event)).contains("why"));
+  event.explained = true;
+  const auto json = nlohmann::json::parse(event_line(event))["why"];
+  EXPECT_EQ(json["test"], "ratio");
+  EXPECT_EQ(json["hops"], 5);
+  EXPECT_EQ(json["of"], 6);
+  EXPECT_EQ(json["speed_belief"], 0.41);
+  ASSERT_EQ(json["conditions"].size(), 3U);
+  const auto& ratio = json["conditions"][0];
+  EXPECT_EQ(ratio["quantity"], "asynchronous_ratio");
+  EXPECT_EQ(ratio["meaning"], "energy beside the orders, to theirs");
+  EXPECT_TRUE(ratio["shown_in"].is_null());
+  EXPECT_EQ(ratio["value"], 0.31);
+  EXPECT_EQ(ratio["at_least"], 0.2);
+  EXPECT_FALSE(ratio.contains("at_most"));
+  EXPECT_EQ(ratio["holds"], true);
+  EXPECT_EQ(json["conditions"][1]["shown_in"], "dB");
+  EXPECT_TRUE(json["conditions"][1]["value"].is_null());
+  EXPECT_EQ(json["conditions"][2]["at_most"], 0.005);
+  EXPECT_FALSE(json["conditions"][2].contains("at_least"));
+  EXPECT_EQ(json["conditions"][2]["holds"], false);
+  event.kind = MonitorEvent::Kind::window;
+  EXPECT_TRUE(nlohmann::json::parse(event_line(event)).contains("why"));
+  event.kind = MonitorEvent::Kind::stream;
+  EXPECT_FALSE(nlohmann::json::parse(event_line(event)).contains("why"));
+  event = {.explained = true};  // no test has anything to go by
+  EXPECT_FALSE(nlohmann::json::parse(event_line(event)).contains("why"));
+}
+
 TEST(MonitorEvents, HaveWordsForAliases) {
   EXPECT_EQ(line_text({}), "");
   EXPECT_EQ(line_text({989.04}), "989.0 Hz folded");

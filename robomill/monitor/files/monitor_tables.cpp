@@ -184,6 +184,8 @@ const Schema<MonitorFile>& process_table() {
        of(&MonitorFile::options,
           key("teeth", &MonitorOptions::teeth, "of the cutter; 0: unknown").at_least(0.0).at_most(64.0)),
        key("modes", &MonitorFile::modes, "modes.json: names the mode that chatters"),
+       key("machine", &MonitorFile::machine,
+           "machine.json: what the machine shows without chatter, of robomill monitor --learn"),
        key("lobes", &MonitorFile::lobes, "lobes.toml of the cut: the best speed and depth from its lobes")});
   return table;
 }
@@ -201,7 +203,8 @@ const Schema<MonitorOptions>& detector_table() {
        key("alarm", &MonitorOptions::alarm_below, alarm_sides,
            "energy-entropy: the side of the threshold that is chatter"),
        key("false_alarms_per_hour", &MonitorOptions::false_alarms_per_hour,
-           "comb-cusum. It sets how long slow growth must last: one hop more for every factor of 37 fewer")
+           "comb-cusum. It sets in how many of 8 hops a family must stand: 5 at 0.1, one more for every factor of 37 "
+           "fewer, 3 to 8")
            .as("false_alarms_per_hour")
            .in_unit()
            .above(0.0)});

@@ -110,6 +110,7 @@ void validate(const MonitorFile& file) {
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     parts.where = file.path.string();
+    if (parts.field == "machine") parts.field = "process.machine";
     if (parts.field == "sample_rate_hz") {
       parts.field = "signal.sample_rate_hz";
       if (file.options.sample_rate_hz == 0.0) parts.hint = "The recording does not say what it was sampled at";

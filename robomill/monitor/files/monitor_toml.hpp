@@ -64,9 +64,10 @@ struct MonitorFile {
   MonitorOptions options = {};  ///< sample_rate_hz is 0 where the file leaves it to the recording
   /// Whether nothing above half the sample rate was sampled; false: not stated, and lines may be folded.
   bool anti_alias_filter = false;
-  std::filesystem::path modes = {};  ///< process.modes; empty: none
-  std::filesystem::path lobes = {};  ///< process.lobes, or the document itself where it holds the cut; empty: none
-  double timeout_s = 1.0;            ///< without samples for so long, the state is blind; > 0
+  std::filesystem::path modes = {};    ///< process.modes; empty: none
+  std::filesystem::path machine = {};  ///< process.machine, machine.json; load_machine reads it; empty: none
+  std::filesystem::path lobes = {};    ///< process.lobes, or the document itself where it holds the cut; empty: none
+  double timeout_s = 1.0;              ///< without samples for so long, the state is blind; > 0
   ActSettings act = {.rule = ActRule::none};
   MqttSettings mqtt = {};
   int metrics_port = -1;  ///< -1: none; 0: any that is free

@@ -117,14 +117,14 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
     EXPECT_NE(rejection(more).find(part), std::string::npos) << rejection(more);
   };
   expect("[detector]\nhop_ms = 0\n", "m.toml:5: detector.hop_ms = 0");
-  expect("[detector]\nhop_ms = 1\n", "m.toml:5: detector.hop_ms = 1 ms; must be at least 16 samples long");
+  expect("[detector]\nhop_ms = 0.2\n", "m.toml:5: detector.hop_ms = 0.2 ms; must be at least 4 samples long");
   expect("[detector]\nhop_ms = 60\n", "detector.window_ms");
   expect("[detector]\nwindow_ms = 1e6\n",
          "m.toml:5: detector.window_ms = 1e+06 ms; must be at most 1000000 samples long. Is it in us? 50 ms is usual");
   expect("[detector]\nhop_ms = 2.5e5\nwindow_ms = 50\n",
          "m.toml:5: detector.hop_ms = 250000 ms; must be at most 1000000 samples long. Is it in us? 25 ms is usual");
   expect("[detector]\nwindow_ms = 0.05\nhop_ms = 25\n",
-         "m.toml:5: detector.window_ms = 0.05 ms; must be at least 32 samples long. Is it in s? 50 ms is usual");
+         "m.toml:5: detector.window_ms = 0.05 ms; must be at least 8 samples long. Is it in s? 50 ms is usual");
   expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be >= 2 and <= 64");
   expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing; must be finite");
   expect("[detector]\nkind = \"magic\"\n", "must be one of \"comb-cusum\", \"energy-entropy\"");

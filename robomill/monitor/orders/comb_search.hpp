@@ -8,7 +8,7 @@
 namespace robomill::monitor {
 
 /// Finds the rotation where no speed is given, among 15 to 500 Hz. Evidence is gathered over the hops with a memory of
-/// 1 s, by the share s(f) of the energy below 1.5 kHz that the multiples of f hold, as SpeedPosterior has it. Half of f
+/// 1 s, by the share s(f) of the energy below 1.5 kHz that the multiples of f hold beyond chance. Half of f
 /// explains all that f does: a candidate is credited 4 ln f, so that the greatest one wins whose multiples are there.
 /// It is found where it beats all others, but its multiples and whole parts, by 4. It may be a multiple of the rotation
 /// or a part of tooth passing.

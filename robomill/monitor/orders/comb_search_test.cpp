@@ -24,16 +24,17 @@ using monitor::testing::cut_of;
 using monitor::testing::power_of;
 using monitor::testing::sum_of;
 using monitor::testing::Tone;
+using monitor::testing::usual_windows_s;
 
 constexpr double rate_hz = 10240.0;
 constexpr std::size_t hop = 256;
 
 double found_hz(CombSearch& search, const std::vector<float>& x) {
-  Spectra spectra(rate_hz, 1);
+  Spectra spectra(rate_hz, 1, usual_windows_s);
   for (std::size_t at = 0; at + hop <= x.size(); at += hop) {
     spectra.push(std::span(x).subspan(at, hop), hop);
-    if (spectra.past_s() < Spectra::windows_s.front()) continue;
-    spectra.transform();
+    if (spectra.past_s() < usual_windows_s.front()) continue;
+    spectra.transform(0);
     search.observe(power_of(spectra.spectrum(0, 0)), spectra.spectrum(0, 0));
   }
   return search.rotation_hz();

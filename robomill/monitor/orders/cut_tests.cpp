@@ -1,317 +1,442 @@
 #include "robomill/monitor/orders/cut_tests.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <utility>
 
 #include "robomill/monitor/orders/hops.hpp"
-#include "robomill/monitor/orders/mains.hpp"
+#include "robomill/monitor/orders/thresholds.hpp"
 
 namespace robomill::monitor {
+
+using namespace thresholds;
+
 namespace {
 
-constexpr double least_ratio = 0.2;                     // of L to S
-constexpr double alarm_s = 0.075, alone_alarm_s = 0.1;  // that something stands out for
-constexpr double entry_alarm_s = 0.15;                  // the same while the tool enters
-constexpr double over_s = 0.15;
-constexpr double most_score = 99.0;     // of L to S
-constexpr double evidence_a_hop = 3.6;  // of ln(hops an hour/alarms an hour)
-constexpr double faint_share = 0.01;    // of the loudest cut
-constexpr double growth_of_swing = 0.5;
-constexpr double loud = 30.0;  // of the least energy: a tone of an idling machine is weaker
-constexpr double alone_share = 0.6;
-constexpr double line_moves = 0.04;  // of a frequency between the windows
-// By which the speed may be off a hint, in its standard deviations, and a line is read wrong.
-constexpr double hint_off = 4.7, line_off_hz = 5.0;
-// Orders of rotation up to which a line may be one, or dominate; of tooth passing that rise first as the tool enters.
-constexpr double any_of_rotation = 5.5, dominant_of_rotation = 2.5, first_of_teeth = 3.5;
-constexpr double any_order = std::numeric_limits<double>::infinity();
-constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
-constexpr std::size_t blocks = 6;  // that the short window is cut into
-constexpr double first_tones_s = 0.3, air_memory_s = 10.0;
-constexpr double stable_ratio = 0.05;   // L to S
-constexpr double still_air = 2.0;       // of the least energy: more is not the air
-constexpr double rung_down = 0.5;       // of the strongest block, in the last
-constexpr double reading = 0.05;        // 1/T: how well a line's frequency is read off
-constexpr double first_reading = 0.15;  // the same of a line that has just come
-constexpr double sharp_line = 0.5;      // 1/T, by which an order moves in 0.3 s
-constexpr float own_comb = 0.5F;        // of the rest, in the multiples of such a line
-constexpr double lone_reach = 4.0;      // 1/T, to each side, that a line that dominates shows
-constexpr double spread = 1.25;         // 1/T, to each side, that hold a line's energy
+constexpr std::array fast_s = {0.3, 0.15};
+constexpr std::array slow_s = {1.0, 0.5};
+constexpr std::array slowest_s = {2.0, 1.0, 0.5};
+constexpr double slow_rate_hz = 5120.0, slowest_rate_hz = 1280.0;  // enough where the spindle is slow
+constexpr double turns = 8.0;        // in a window of families: orders are told apart, and lines between them
+constexpr double most_score = 99.0;  // of L to S
 
-// Hum.
-bool of_the_mains(double frequency_hz) {
-  return std::ranges::any_of(mains_hz, [&](double hz) {
-    return frequency_hz < highest_of_mains * hz && std::abs(std::remainder(frequency_hz, hz)) < mains_width_hz;
-  });
+constexpr double lobe = 1.25;  // 1/T, to each side, that hold a line's energy
+// Orders of rotation and of tooth passing up to which a line that runs away may be one, and by how much it is read
+// wrong.
+constexpr double low_of_rotation = 5.5, low_of_teeth = 3.5, line_off_hz = 5.0;
+// Of a slow spindle the lobes of the orders fill half of the lines: the floor is the lower quartile of four orders.
+constexpr double slow_floor_part = 0.25, slow_floor_orders = 4.0;
+constexpr double usual_false_alarms_per_hour = 0.1, evidence_a_hop = 3.6;  // ln 37: family hops
+constexpr int fewest_family_hops = 3, kept_hops = 8;
+constexpr double reading = 0.05;  // 1/T: how well a line's frequency is read off
+
+// The first that holds names an alarm.
+constexpr Test order_of_tests[] = {Test::dominant, Test::ratio,   Test::growth,
+                                   Test::family,   Test::runaway, Test::slow_ratio};
+
+double over(double value, double by) noexcept {
+  return value / (by + 1e-300);
 }
 
 }  // namespace
 
 CutTests::CutTests(const Setup& setup)
     : setup_(setup),
-      family_hops_(static_cast<std::size_t>(std::clamp(
-          std::round(std::log(3600.0 / setup.hop_s / setup.false_alarms_per_hour) / evidence_a_hop), 2.0, 12.0))),
-      spectra_(setup.sample_rate_hz, setup.channels),
-      speed_({.hop_s = setup.hop_s,
-              .highest_hz = spectra_.highest_hz(),
-              .std_ratio = setup.speed_std_ratio,
-              .teeth = setup.teeth}),
+      fast_(setup.sample_rate_hz, setup.channels, fast_s),
+      slow_(setup.sample_rate_hz, setup.channels, slow_s, slow_rate_hz),
+      slowest_(setup.sample_rate_hz, setup.channels, slowest_s, slowest_rate_hz),
+      floor_(most_lines()),
+      speed_({.hop_s = setup.hop_s, .std_ratio = setup.speed_std_ratio, .teeth = setup.teeth, .lines = most_lines()}),
       search_(setup.hop_s),
-      cut_(setup.hop_s),
-      growth_(spectra_.highest_hz(), setup.hop_s),
-      family_(setup.hop_s),
+      slow_speed_({.hop_s = setup.hop_s,
+                   .std_ratio = setup.speed_std_ratio,
+                   .teeth = setup.teeth,
+                   .lines = slowest_.spectrum(0, 0).line.size()}),
+      slow_line_(slowest_.spectrum(0, 0), slowest_.highest_hz(), setup.hop_s),
+      cut_(setup.hop_s, setup.machine ? setup.machine->quietest_energy : 0.0),
+      dominant_(fast_.spectrum(0, 0).line.size(), setup.hop_s),
+      growth_(fast_.highest_hz(), setup.hop_s),
+      past_(setup.hop_s),
+      machine_(setup.machine),
       runaway_(setup.hop_s),
-      tones_(GrowthTest::cells(spectra_.highest_hz()), setup.hop_s),
-      power_(spectra_.spectrum(0, 0).line.size()),
-      long_power_(power_.size()),
-      rest_(power_.size()),
-      cells_(GrowthTest::cells(spectra_.highest_hz())) {
-  for (std::size_t w = 0; w < windows; ++w) lines_.emplace_back(spectra_.spectrum(w, 0), spectra_.highest_hz());
+      family_hops_(std::clamp(
+          alarm_hops - static_cast<int>(std::lround(
+                           std::log(setup.false_alarms_per_hour / usual_false_alarms_per_hour) / evidence_a_hop)),
+          fewest_family_hops, kept_hops)),
+      calm_known_(setup.machine != nullptr) {
+  const auto add = [&](Spectra& spectra, std::size_t at, double seconds) {
+    const Spectrum& like = spectra.spectrum(at, 0);
+    const auto lines = std::min(like.line.size(), static_cast<std::size_t>(spectra.highest_hz() / like.step_hz) + 1);
+    windows_.push_back(
+        {&spectra, at, seconds,
+         ResidualLines(like, {.highest_hz = spectra.highest_hz(), .sample_rate_hz = setup.sample_rate_hz}),
+         std::vector<float>(lines)});
+  };
+  add(fast_, 1, fast_s[1]);
+  add(fast_, 0, fast_s[0]);
+  add(slow_, 1, slow_s[1]);
+  add(slow_, 0, slow_s[0]);
+  add(slowest_, 0, slowest_s[0]);
+  for (std::size_t i = slowest_s.size(); i-- > 0;) {
+    const Spectrum& like = slowest_.spectrum(i, 0);
+    const auto lines = std::min(like.line.size(), static_cast<std::size_t>(slowest_.highest_hz() / like.step_hz) + 1);
+    slow_windows_.push_back({i, slowest_s[i], std::vector<float>(lines)});
+  }
+}
+
+std::size_t CutTests::most_lines() const noexcept {
+  const auto lines = [](const Spectra& of) { return of.spectrum(0, 0).line.size(); };
+  return std::max({lines(fast_), lines(slow_), lines(slowest_)});
 }
 
 void CutTests::set_hint(double rotation_hz) noexcept {
-  if (rotation_hz <= 0.0 && given_) cut_.forget_speed();
   given_ = rotation_hz > 0.0;
   speed_.set_hint(std::max(0.0, rotation_hz));
+  slow_speed_.set_hint(std::max(0.0, rotation_hz));
 }
 
 void CutTests::measured(double rotation_hz, double std_ratio) noexcept {
   if (!given_) set_hint(rotation_hz);
-  measured_hz_ = rotation_hz;
-  measured_std_ratio_ = std_ratio;
+  speed_.measured(rotation_hz, std_ratio);
+  slow_speed_.measured(rotation_hz, std_ratio);
 }
 
 void CutTests::reset() noexcept {
-  spectra_.reset();
+  fast_.reset();
+  slow_.reset();
+  slowest_.reset();
   if (!given_) speed_.set_hint(0.0);
   speed_.reset();
+  slow_speed_.reset();
+  slow_line_.reset();
   search_.reset();
   cut_.reset();
+  dominant_.reset();
   growth_.forget();
-  family_.forget();
+  past_.forget();
   runaway_.reset();
-  tones_.reset();
-  found_ = {};
-  peak_ = {};
-  counts_ = {};
-  measured_hz_ = air_energy_ = frequency_hz_ = short_frequency_hz_ = 0.0;
-  chatter_ = false;
+  found_far_ = found_near_ = {};
+  grown_ = {};
+  why_ = {};
+  held_ = {};
+  growing_ = calm_ = clean_ = 0;
+  calm_known_ = setup_.machine != nullptr;
+  grown_hz_ = rises_hz_ = 0.0;
+  chatter_ = rises_ = false;
+  alarm_ = read_by_ = Test::none;
+  frequency_hz_ = 0.0;
+}
+
+double CutTests::history_s(double rotation_hz) noexcept {
+  if (rotation_hz < lowest_rotation_hz) return fast_s[0];
+  const double seconds = (rotation_hz <= highest_slow_hz ? slow_speed_turns : turns) / rotation_hz;
+  for (const double window_s : {fast_s[0], slow_s[1], slow_s[0]}) {
+    if (seconds <= window_s) return window_s;
+  }
+  return slowest_s[0];
+}
+
+// Of eight turns at least where these fit into two seconds, and no longer than that: chatter of a fast spindle is found
+// sooner in a short window.
+void CutTests::choose_windows() noexcept {
+  const double hint_hz = speed_.hint_hz();
+  armed_ = hint_hz >= lowest_rotation_hz;
+  far_ = s_0_3;
+  near_ = s_0_15;
+  if (!armed_) return;
+  const double seconds = turns / hint_hz;
+  while (far_ + 1 < windows && windows_[far_].seconds < seconds - 1e-9) far_ = static_cast<Of>(far_ + 1);
+  while (near_ + 1 < windows && windows_[near_].seconds < seconds - 1e-9) near_ = static_cast<Of>(near_ + 1);
+}
+
+void CutTests::transform(std::size_t window, std::uint64_t bad_channels) noexcept {
+  Window& of = windows_[window];
+  of.spectra->transform(of.at);
+  of.spectra->power(of.at, bad_channels, of.power);
+}
+
+std::span<const float> CutTests::floor_of(const Window& window) noexcept {
+  return floor_.of(window.power, static_cast<std::size_t>(2.0 * speed_.hint_hz() / window.like().step_hz));
 }
 
 void CutTests::measure(std::uint64_t bad_channels) noexcept {
-  using Motion = SpeedPosterior::Motion;
-  speed_.predict(chatter_ ? Motion::held : cut_.anchored(found_.back()) ? Motion::near : Motion::free);
-  for (std::size_t w = 0; w < windows; ++w) {
-    const Spectrum& like = spectra_.spectrum(w, 0);
-    std::fill_n(power_.begin(), like.line.size(), 0.0F);
-    for (std::size_t c = 0; c < setup_.channels; ++c) {
-      if ((bad_channels >> c & 1U) != 0) continue;
-      const Spectrum& own = spectra_.spectrum(w, c);
-      for (std::size_t i = 1; i < own.line.size(); ++i) power_[i] += std::norm(own.line[i]);
-    }
-    if (w == 0) std::copy_n(power_.begin(), like.line.size(), long_power_.begin());
-    if (w == 0 && (!given_ || !cut_.known())) {
-      search_.observe(std::span(power_).first(like.line.size()), like);
-      const bool sought = !given_ && !chatter_ && !cut_.known();
-      if (sought && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
-    }
-    peak_[w] = strongest(like, 0.0, spectra_.highest_hz());
-    speed_.observe(without_a_lone_line(w), like);
+  transform(s_0_15, bad_channels);
+  transform(s_0_3, bad_channels);
+  const Window& usual = windows_[s_0_3];
+  const bool known = follows();
+  if (!given_ || !explained()) {
+    search_.observe(usual.power, usual.like());
+    if (!given_ && !chatter_ && !known && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
   }
-  if (measured_hz_ > 0.0) speed_.observe(std::exchange(measured_hz_, 0.0), measured_std_ratio_);
-  speed_.conclude();
-  speed_.refine(long_power_, spectra_.spectrum(0, 0));
-  if (speed_.rotation_hz() <= 0.0) {
-    found_ = {};
+  choose_windows();
+  found_far_ = found_near_ = {};
+  if (armed_) {
+    Window& far = windows_[far_];
+    if (far_ > s_0_3) transform(far_, bad_channels);
+    const std::span<const float> floor = floor_of(far);
+    speed_.step(far.power, floor, far.like());
+    const ResidualLines::Orders orders{speed_.rotation_hz(), setup_.teeth, given_};
+    found_far_ = far.lines.find(far.power, floor, orders);
+    Window& near = windows_[near_];
+    found_near_ = near_ == far_ ? found_far_ : near.lines.find(near.power, {}, orders);
+  } else {
+    speed_.reset();
+  }
+  const double energy = energy_of(usual.power, usual.like(), fast_.highest_hz()).whole;
+  cut_.step({.energy = energy,
+             .synchronous = found_far_.synchronous,
+             .whole = found_far_.whole,
+             .teeth = found_far_.teeth,
+             .family = found_far_.family,
+             .short_synchronous = found_near_.synchronous,
+             .rotation_hz = armed_ ? speed_.rotation_hz() : 0.0,
+             .comb = armed_ ? speed_.seen() : 0.0,
+             .full = fast_.past_s() >= usual.seconds - 1e-9},
+            chatter_);
+}
+
+void CutTests::follow_growth() noexcept {
+  grown_ = {};
+  grown_hz_ = 0.0;
+  if (!armed_) return;
+  if (cut_.entered_s() == 0.0) growth_.forget();  // what a cut brings with it has no past
+  const Window& near = windows_[near_];
+  const std::span<double> cells = growth_.begin();
+  near.lines.share_out(GrowthTest::cell_hz, cells);
+  near.lines.share_out_between(GrowthTest::cell_hz, cells);
+  grown_ = growth_.step(found_near_.teeth);
+  if (fast_.past_s() >= fast_s[0] && !chatter_) growth_.learn();
+  if (grown_.energy <= 0.0) return;
+  // The strongest line of its cell.
+  const Spectrum& like = near.like();
+  const auto line = [&](double hz) {
+    return std::clamp<double>(hz / like.step_hz, 1.0, static_cast<double>(near.power.size()) - 2.0);
+  };
+  const auto from = static_cast<std::size_t>(line(grown_.frequency_hz - 0.5 * GrowthTest::cell_hz));
+  const auto end = static_cast<std::size_t>(line(grown_.frequency_hz + 0.5 * GrowthTest::cell_hz)) + 1;
+  std::size_t at = from;
+  for (std::size_t i = from; i < end; ++i) at = near.power[i] > near.power[at] ? i : at;
+  grown_hz_ = like.peak_hz(at, near.power[at - 1], near.power[at], near.power[at + 1]);
+}
+
+void CutTests::follow_dominant() noexcept {
+  const Window& usual = windows_[s_0_3];
+  const double comb_hz = given_ ? 0.0 : search_.rotation_hz();
+  dominant_.step(usual.power, usual.like(), energy_of(usual.power, usual.like(), fast_.highest_hz()).whole,
+                 {.rotation_hz = given_ ? speed_.rotation_hz() : 0.0,
+                  .teeth = setup_.teeth,
+                  .off_ratio = speed_.belief() > forced_belief ? forced_off : forced_off_unsure,
+                  .comb_hz = comb_hz},
+                 fast_.past_s() >= usual.seconds - 1e-9);
+}
+
+// A harmonic of the teeth rises as fast where the tool enters: low multiples do not count.
+void CutTests::follow_runaway() noexcept {
+  const Window& near = windows_[s_0_15];
+  const Spectrum& like = near.like();
+  const std::size_t first = std::min(like.first_line(), near.power.size() - 3);
+  const std::size_t end = near.power.size() - 2;
+  std::size_t at = first;
+  for (std::size_t i = first; i < end; ++i) at = near.power[i] > near.power[at] ? i : at;
+  const auto beside = static_cast<std::size_t>(lobe / (like.seconds * like.step_hz));
+  const std::size_t from = std::max(first, at - std::min(at, beside));
+  const auto power = std::span<const float>(near.power);
+  const double line = sums_of(power.subspan(from, std::min(end, at + beside + 1) - from)).plain;
+  const double whole = sums_of(power.subspan(first, end - first)).plain;
+  rises_hz_ = like.peak_hz(at, near.power[at - 1], near.power[at], near.power[at + 1]);
+  rises_ = runaway_.step(rises_hz_, line * like.energy_share(), over(line, whole)) && !may_be_the_cut(rises_hz_);
+}
+
+// Of a slow spindle the orders are followed in sixteen turns, and the strongest line in eight.
+void CutTests::follow_slow_line(std::uint64_t bad_channels) noexcept {
+  const double hint_hz = given_ ? slow_speed_.hint_hz() : 0.0;
+  slow_spindle_ = hint_hz >= lowest_rotation_hz && hint_hz <= highest_slow_hz;
+  if (!slow_spindle_) {
+    slow_line_.reset();
     return;
   }
-  for (std::size_t w = 0; w < windows; ++w) {
-    lines_[w].begin(speed_.rotation_hz(), setup_.teeth, given_);
-    for (std::size_t c = 0; c < setup_.channels; ++c) {
-      if ((bad_channels >> c & 1U) == 0) lines_[w].add(spectra_.spectrum(w, c));
-    }
-    found_[w] = lines_[w].finish();
+  const auto of_turns = [&](double turns_of_it) {
+    std::size_t i = 0;
+    while (i + 1 < slow_windows_.size() && slow_windows_[i].seconds < turns_of_it / hint_hz - 1e-9) ++i;
+    return i;
+  };
+  slow_orders_at_ = of_turns(slow_speed_turns);
+  slow_at_ = of_turns(turns);
+  for (std::size_t i = 0; i < slow_windows_.size(); ++i) {
+    if (i != slow_orders_at_ && i != slow_at_) continue;
+    slowest_.transform(slow_windows_[i].at);
+    slowest_.power(slow_windows_[i].at, bad_channels, slow_windows_[i].power);
   }
+  const SlowWindow& of_orders = slow_windows_[slow_orders_at_];
+  const Spectrum& like = slowest_.spectrum(of_orders.at, 0);
+  const auto block = static_cast<std::size_t>(slow_floor_orders * hint_hz / like.step_hz);
+  slow_speed_.step(of_orders.power, floor_.of(of_orders.power, block, slow_floor_part), like);
+  const SlowWindow& window = slow_windows_[slow_at_];
+  slow_line_.step(window.power, slowest_.spectrum(window.at, 0), slow_speed_.rotation_hz(),
+                  slowest_.past_s() >= window.seconds - 1e-9);
 }
 
-// One line that dominates, and is none of the cut's, would in time be taken for an order. Where its multiples hold a
-// good part of the rest it may be tooth passing at another speed than given.
-std::span<const float> CutTests::without_a_lone_line(std::size_t window) noexcept {
-  const Spectrum& like = spectra_.spectrum(window, 0);
-  const Peak& peak = peak_[window];
-  const auto power = std::span<const float>(power_).first(like.line.size());
-  if (peak.share < alone_share ||
-      may_be_the_cut(peak.frequency_hz, dominant_of_rotation, any_order, SpeedPosterior::reach))
-    return power;
-  std::ranges::copy(power, rest_.begin());
-  const double reach_hz = lone_reach / like.seconds;
-  const auto from = static_cast<std::size_t>(std::max(0.0, peak.frequency_hz - reach_hz) / like.step_hz);
-  const auto to = std::min(power.size(), static_cast<std::size_t>((peak.frequency_hz + reach_hz) / like.step_hz) + 1);
-  std::fill(rest_.begin() + static_cast<std::ptrdiff_t>(from), rest_.begin() + static_cast<std::ptrdiff_t>(to), 0.0F);
-  const auto sum = [](std::span<const float> of) { return std::accumulate(of.begin(), of.end(), 0.0F); };
-  float multiples = 0.0F;
-  for (double hz = 2.0 * peak.frequency_hz; hz < spectra_.highest_hz(); hz += peak.frequency_hz) {
-    const auto first = static_cast<std::size_t>((hz - spread / like.seconds) / like.step_hz);
-    const auto count = static_cast<std::size_t>(2.0 * spread / (like.seconds * like.step_hz)) + 1;
-    if (first < power.size()) multiples += sum(power.subspan(first, std::min(count, power.size() - first)));
-  }
-  const auto rest = std::span<const float>(rest_).first(power.size());
-  return multiples > own_comb * sum(rest) ? power : rest;
-}
-
-CutTests::Peak CutTests::strongest(const Spectrum& like, double low_hz, double high_hz) const noexcept {
-  const auto first = std::max(like.first_line(), static_cast<std::size_t>(low_hz / like.step_hz) + 1);
-  const auto end = std::min(like.line.size() - 1, static_cast<std::size_t>(high_hz / like.step_hz) + 1);
-  const auto beside = static_cast<std::size_t>(spread / (like.seconds * like.step_hz));
-  if (first >= end) return {};
-  double whole = 1e-300;
-  std::size_t at = first;
-  for (std::size_t i = first; i < end; ++i) {
-    whole += static_cast<double>(power_[i]);
-    if (power_[i] > power_[at]) at = i;
-  }
-  double line = 0.0;
-  for (std::size_t i = std::max(first, at - std::min(at, beside)); i < std::min(end, at + beside + 1); ++i) {
-    line += static_cast<double>(power_[i]);
-  }
-  return {like.peak_hz(at, power_[at - 1], power_[at], power_[at + 1]), line / whole, whole * like.energy_share()};
-}
-
-bool CutTests::ratio_stands_out() const noexcept {
-  const ResidualFamily& far = found_.front();
-  const ResidualFamily& near = found_.back();
-  return cut_.known() && far.family > least_ratio * far.synchronous && near.family > least_ratio * near.synchronous &&
-         near.family > faint_share * cut_.loudest() && !of_the_mains(far.frequency_hz);
-}
-
-// A low multiple of rotation or one of tooth passing, as far as the hint is unsure: where a harmonic of the teeth meets
-// a mode it may hold nearly all energy.
-bool CutTests::may_be_the_cut(double frequency_hz, double highest_of_rotation, double highest_of_teeth,
-                              double off) const noexcept {
+bool CutTests::may_be_the_cut(double frequency_hz) const noexcept {
   const double hint_hz = speed_.hint_hz();
   if (hint_hz <= 0.0 || setup_.teeth == 0) return true;
   const auto multiple = [&](double of_hz, double highest) {
     const double order = frequency_hz / of_hz;
-    return order < highest && std::abs(order - std::round(order)) < off * order + line_off_hz / of_hz;
+    return order < highest && std::abs(order - std::round(order)) < SpeedTracker::reach * order + line_off_hz / of_hz;
   };
-  return multiple(hint_hz, highest_of_rotation) || multiple(hint_hz * setup_.teeth, highest_of_teeth);
+  return multiple(hint_hz, low_of_rotation) || multiple(hint_hz * setup_.teeth, low_of_teeth);
 }
 
-double CutTests::speed_off() const noexcept {
-  return cut_.has_cut() ? SpeedPosterior::reach : std::min(SpeedPosterior::reach, hint_off * setup_.speed_std_ratio);
+// A comb that was found without a hint is one, until it explains the cut no more.
+double CutTests::belief() const noexcept {
+  if (!armed_) return 0.0;
+  return given_ ? speed_.belief() : 1.0;
 }
 
-bool CutTests::stands_alone() const noexcept {
-  const Peak& far = peak_.front();
-  const Peak& near = peak_.back();
-  if (cut_.known() ||
-      (!chatter_ && (cut_.locked() || cut_.unsettled() || air_energy_ <= 0.0 || near.energy < loud * air_energy_))) {
-    return false;
-  }
-  return std::min(far.share, near.share) > alone_share &&
-         std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
-         !may_be_the_cut(near.frequency_hz, any_of_rotation, any_order, speed_off()) && !of_the_mains(far.frequency_hz);
+bool CutTests::follows() const noexcept {
+  return armed_ && belief() >= least_belief && cut_.anchored() >= 1.0;
 }
 
-bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
-  const bool known = given_ && cut_.known() && speed_.rotation_hz() >= lowest_rotation_hz;
-  const double off_hz = known ? speed_.rotation_hz() : 0.0;  // of which the orders are taken off
-  std::array<double, blocks> sum = {};
+bool CutTests::explained() const noexcept {
+  return follows() && cut_.synchronous_share() >= explains;
+}
+
+// A knock rings down, and what is left of one that has rung down says nothing.
+CutTests::Sustained CutTests::sustained(Test test, std::uint64_t bad_channels) const noexcept {
+  const Window& window = windows_[window_of(test)];
+  const auto blocks = static_cast<std::size_t>(std::lround(window.seconds / block_s));
+  const bool off = armed_ && given_ && cut_.anchored() >= 1.0;  // the orders are taken off
+  std::array<double, most_blocks> memory = {};
+  const std::span<double> sum = std::span(memory).first(blocks);
   for (std::size_t c = 0; c < setup_.channels; ++c) {
     if ((bad_channels >> c & 1U) != 0) continue;
-    std::array<double, blocks> own = {};
-    spectra_.course(c, frequency_hz, off_hz, own);
+    std::array<double, most_blocks> own = {};
+    window.spectra->course(window.at, c, reading_hz(test), off ? speed_.rotation_hz() : 0.0,
+                           std::span(own).first(blocks));
     for (std::size_t b = 0; b < blocks; ++b) sum[b] += own[b];
   }
-  return sum.back() < rung_down * *std::ranges::max_element(sum);
+  const auto of_a_turn = static_cast<std::size_t>(armed_ ? std::ceil(1.0 / (speed_.hint_hz() * block_s)) : 1.0);
+  const std::size_t turn = std::clamp<std::size_t>(of_a_turn, 1, blocks / 2);
+  const double last = *std::ranges::max_element(sum.last(turn));
+  const double before = *std::ranges::max_element(sum.last(2 * turn).first(turn));
+  const double most = *std::ranges::max_element(sum);
+  double whole = 0.0, squares = 0.0;
+  for (const double each : sum) {
+    whole += each;
+    squares += each * each;
+  }
+  return {over(last, most), over(std::min(last, before), most),
+          over(whole * whole, static_cast<double>(blocks) * squares)};
 }
 
-// A speed that is not known explains a tone as well as a cut: what stands in air is all of it.
-void CutTests::fill_cells() noexcept {
-  std::ranges::fill(cells_, 0.0);
-  if (cut_.known()) {
-    lines_.back().share_out(GrowthTest::cell_hz, cells_);
+double CutTests::reading_hz(Test test) const noexcept {
+  switch (test) {
+    case Test::dominant:
+      return dominant_.frequency_hz();
+    case Test::ratio:
+    case Test::family:
+      return found_far_.frequency_hz;
+    case Test::growth:
+      return grown_hz_;
+    case Test::slow_ratio:
+      return slow_line_.frequency_hz();
+    case Test::runaway:
+      return rises_hz_;
+    case Test::none:
+      break;
+  }
+  return 0.0;
+}
+
+void CutTests::decide(std::uint64_t bad_channels, bool still) noexcept {
+  Test begins = Test::none;
+  for (const Test test : order_of_tests) {
+    const auto at = static_cast<std::size_t>(test);
+    Explanation& why = why_[at];
+    bool holds = why.conditions > 0 && why.held() == why.conditions && !still;
+    // A line that rings down: of growth and of a runaway in any hop, of a ratio or a family as the alarm would begin.
+    const bool in_each = test == Test::growth || test == Test::runaway;
+    const bool at_begin = test == Test::ratio || test == Test::family;
+    bool rings = false;
+    if (!chatter_ && holds && (in_each || (at_begin && std::popcount(held_[at]) + 1 >= why.enough_hops))) {
+      const Sustained line = sustained(test, bad_channels);
+      if (in_each) {
+        why.ask(Quantity::line_sustained, line.last, least_sustained);
+      } else {
+        why.ask(Quantity::line_kept_up, line.last_two, least_kept_up);
+        why.ask(Quantity::line_spread, line.spread, least_spread);
+      }
+      rings = why.held() < why.conditions;
+    }
+    holds = holds && !(rings && in_each);
+    held_[at] = static_cast<std::uint8_t>(held_[at] << 1U | (holds ? 1U : 0U));
+    if (test == Test::growth) growing_ = holds ? growing_ + 1 : 0;
+    why.hops = test == Test::growth ? static_cast<int>(growing_) : std::popcount(held_[at]);
+    if (begins == Test::none && holds && !rings && why.hops >= why.enough_hops) begins = test;
+  }
+  if (!chatter_) {
+    if (begins == Test::none) return;
+    chatter_ = true;
+    alarm_ = read_by_ = begins;
+    calm_ = 0;
+    frequency_hz_ = reading_hz(begins);
     return;
   }
-  const Spectrum& like = spectrum(0);
-  for (std::size_t i = like.first_line(); i < like.line.size(); ++i) {
-    const auto cell = static_cast<std::size_t>(static_cast<double>(i) * like.step_hz / GrowthTest::cell_hz);
-    cells_[std::min(cells_.size() - 1, cell)] += like.energy_share() * static_cast<double>(power_[i]);
+  const auto stays_by = std::ranges::find_if(order_of_tests, [&](Test test) { return stays(test); });
+  if (stays_by != std::end(order_of_tests)) {
+    calm_ = 0;
+    read_by_ = *stays_by;
+    if (reading_hz(read_by_) > 0.0) frequency_hz_ = reading_hz(read_by_);
+  } else if (++calm_ >= hops_of(over_s, setup_.hop_s)) {
+    chatter_ = false;
+    alarm_ = Test::none;
+    held_ = {};
+    growing_ = 0;
   }
 }
 
-void CutTests::find_in_cut(Finding& out) noexcept {
-  const ResidualFamily& near = found_.back();
-  const bool steady = cut_.steady();
-  if (!cut_.known() || (!steady && !chatter_)) {
-    growth_.forget();
-    family_.forget();
-  }
-  if (!cut_.known()) return;
-  const std::span<double> cells = growth_.begin();
-  std::ranges::copy(cells_, cells.begin());
-  lines_.back().share_out_between(GrowthTest::cell_hz, cells);
-  const GrowthTest::Verdict grown = growth_.step(near.teeth);
-  if (!chatter_) growth_.learn();
-  // An order that moves by more than half of a line's width stands beside itself.
-  const bool sharp = cut_.speed_range() * near.frequency_hz * spectrum(0).seconds < sharp_line;
-  if (!cut_.enters() && family_.step(near, cut_.swing(), !chatter_) && sharp) {
-    out.family = true;
-    out.frequency_hz = near.frequency_hz;
-  }
-  if (grown.energy > 0.0) {
-    out.growth = chatter_ || grown.energy > growth_of_swing * cut_.swing();
-    out.frequency_hz = strongest(spectrum(0), grown.frequency_hz - 0.5 * GrowthTest::cell_hz,
-                                 grown.frequency_hz + 0.5 * GrowthTest::cell_hz)
-                           .frequency_hz;
-  }
-  if ((steady || chatter_) && ratio_stands_out()) {
-    out.ratio = true;
-    out.frequency_hz = near.frequency_hz;
+// Against the quietest energy, or by what stands beside the orders: two ways to see that a cut is not all chatter.
+void CutTests::look_for_calm(std::uint64_t bad_channels) noexcept {
+  const std::uint64_t all = ~std::uint64_t{0} >> (64U - setup_.channels);
+  const bool full = fast_.past_s() >= windows_[s_0_3].seconds - 1e-9;
+  const bool clean = full && !chatter_ && (~bad_channels & all) != 0 && follows() && cut_.cutting() >= 1.0 &&
+                     found_far_.family < least_beside * found_far_.synchronous;
+  clean_ = clean ? clean_ + 1 : 0;
+  if (cut_.above_quiet() >= quiet_is_known || clean_ >= hops_of(clean_s, setup_.hop_s)) calm_known_ = true;
+}
+
+CutTests::Of CutTests::window_of(Test test) const noexcept {
+  switch (test) {
+    case Test::runaway:
+      return s_0_15;
+    case Test::growth:
+      return near_;
+    case Test::ratio:
+    case Test::family:
+      return far_;
+    default:
+      return s_0_3;
   }
 }
 
-CutTests::Finding CutTests::find(std::uint64_t bad_channels) noexcept {
-  Finding out;
-  fill_cells();
-  const Peak& peak = peak_.back();
-  out.runaway = runaway_.step(peak.frequency_hz, peak.share * peak.energy, peak.share) &&
-                !may_be_the_cut(peak.frequency_hz, any_of_rotation, first_of_teeth, speed_off());
-  out.alone = stands_alone();
-  if (out.runaway || out.alone) out.frequency_hz = peak.frequency_hz;
-  find_in_cut(out);
-  if (out.any() && !chatter_ && rings_down(out.frequency_hz, bad_channels)) out = {};
-  const auto cell = static_cast<std::size_t>(out.frequency_hz / GrowthTest::cell_hz);
-  if ((out.ratio || out.alone || out.runaway) && !chatter_ && tones_.stood(cell, cells_)) out = {};
-  if (!chatter_ && !out.any()) learn_tones();
-  return out;
-}
-
-// In air, and in cuts that are surely stable; what comes with the tool's entry may be chatter.
-void CutTests::learn_tones() noexcept {
-  if (spectra_.past_s() < first_tones_s) return;
-  const bool stable = cut_.known() && !cut_.enters() && std::ranges::all_of(found_, [](const ResidualFamily& each) {
-                        return each.family < stable_ratio * each.synchronous;
-                      });
-  const double energy = peak_.back().energy;
-  air_energy_ = air_energy_ == 0.0 ? energy : std::min(energy, air_energy_ * std::exp(setup_.hop_s / air_memory_s));
-  if (stable || energy <= still_air * air_energy_) tones_.learn(cells_);
+// The spectra and the window in which the frequency was read.
+std::pair<const Spectra*, std::size_t> CutTests::read_in() const noexcept {
+  if (read_by_ == Test::slow_ratio) return {&slowest_, slow_windows_[slow_at_].at};
+  const Window& window = windows_[window_of(read_by_)];
+  return {window.spectra, window.at};
 }
 
 void CutTests::describe(std::uint64_t bad_channels, Verdict& verdict) const noexcept {
-  const Spectrum& like = spectra_.spectrum(0, 0);
-  const bool at_first = frequency_hz_ == short_frequency_hz_;  // read in the short window, where the line is still new
-  const double read_hz = at_first ? first_reading / spectra_.spectrum(windows - 1, 0).seconds : reading / like.seconds;
+  const auto [spectra, window] = read_in();
+  const Spectrum& like = spectra->spectrum(window, 0);
   verdict.frequency_hz = frequency_hz_;
-  verdict.frequency_std_hz = std::hypot(read_hz, (frequency_hz_ - short_frequency_hz_) / 3.0);
+  verdict.frequency_std_hz = reading / like.seconds;
   const auto at = std::min(like.line.size() - 1, static_cast<std::size_t>(std::lround(frequency_hz_ / like.step_hz)));
+  float strongest = -1.0F;
   for (std::size_t c = 0; c < setup_.channels; ++c) {
-    if ((bad_channels >> c & 1U) != 0) continue;
-    const auto level = [&](std::size_t channel) { return std::norm(spectra_.spectrum(0, channel).line[at]); };
-    if (level(c) > level(verdict.channel)) verdict.channel = c;
+    const float strength = std::norm(spectra->spectrum(window, c).line[at]);
+    if ((bad_channels >> c & 1U) != 0 || strength <= strongest) continue;
+    strongest = strength;
+    verdict.channel = c;
   }
   if (!verdict.known || verdict.rotation_hz <= 0.0 || setup_.teeth < 2) return;
   const double order = frequency_hz_ / verdict.rotation_hz;
@@ -321,55 +446,41 @@ void CutTests::describe(std::uint64_t bad_channels, Verdict& verdict) const noex
   verdict.synchronous = 2 * k % setup_.teeth == 0 ? SynchronousChatter::period_doubling : SynchronousChatter::locked;
 }
 
-// How far the hops have come that an alarm takes: 1 is one. What stands out by the ratio alone may beat: a hop without
-// takes one back.
-double CutTests::count(const Finding& found) noexcept {
-  const auto in_a_row = [](bool now, std::size_t& running) { running = now ? running + 1 : 0; };
-  in_a_row(found.growth, counts_.growth);
-  in_a_row(found.family, counts_.family);
-  in_a_row(found.alone, counts_.alone);
-  in_a_row(!found.any(), counts_.calm);
-  const auto part = [](std::size_t of, std::size_t all) { return static_cast<double>(of) / static_cast<double>(all); };
-  const auto hops = [&](double seconds) { return hops_of(seconds, setup_.hop_s); };
-  counts_.ratio = found.ratio ? std::min(counts_.ratio + 1, hops(entry_alarm_s)) : counts_.ratio - (counts_.ratio > 0);
-  return std::max({part(counts_.ratio, hops(cut_.enters() ? entry_alarm_s : alarm_s)),
-                   cut_.enters() ? 0.0 : part(counts_.growth, hops(alarm_s)), part(counts_.family, family_hops_),
-                   part(counts_.alone, hops(alone_alarm_s)), found.runaway ? 1.0 : 0.0});
-}
-
 CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t frames, std::uint64_t bad_channels,
                                  bool still) noexcept {
-  spectra_.push(samples, frames);
-  spectra_.transform();
+  fast_.push(samples, frames);
+  slow_.push(samples, frames);
+  slowest_.push(samples, frames);
   measure(bad_channels);
-  cut_.step(found_.back(), speed_, chatter_);
-  Finding found = find(bad_channels);
-  if (still && !chatter_) found = {};
-  const double evidence = count(found);
-  if (found.any()) {
-    short_frequency_hz_ = found.frequency_hz;
-    // Of a line that has stood for long, the long window reads better.
-    const bool alone = found.alone || found.runaway;
-    const double far_hz = alone ? peak_.front().frequency_hz : found_.front().frequency_hz;
-    const bool same = std::abs(far_hz - found.frequency_hz) < line_moves * found.frequency_hz;
-    frequency_hz_ = chatter_ && same && (found.ratio || alone) ? far_hz : found.frequency_hz;
-  }
-  if (!chatter_) {
-    chatter_ = evidence >= 1.0;
-  } else if (counts_.calm >= hops_of(over_s, setup_.hop_s)) {
-    chatter_ = false;
-    counts_ = {};
-    cut_.chatter_ended();
-  }
-  const ResidualFamily& near = found_.back();
-  const double ratio = near.family / (near.synchronous + 1e-300);
+  bad_channels_ = bad_channels;
+  follow_growth();
+  follow_dominant();
+  follow_runaway();
+  follow_slow_line(bad_channels);
+  explain_all();
+  decide(bad_channels, still);
+  look_for_calm(bad_channels);
+  const bool settled = cut_.entered_s() >= settled_s;
+  if (!chatter_ && armed_ && settled && fast_.past_s() >= fast_s[0]) past_.learn(found_far_.family);
+  const auto closest = std::ranges::max_element(why_, {}, [](const Explanation& why) {
+    return why.conditions == 0 ? -1.0 : why.hops + static_cast<double>(why.held()) / why.conditions;
+  });
+  const Explanation& why = chatter_ ? why_[static_cast<std::size_t>(alarm_)] : *closest;
+  const double ratio = over(found_far_.family, found_far_.synchronous);
+  const double evidence = static_cast<double>(why.hops) / std::max(1, why.enough_hops);
   Verdict out{.chatter = chatter_,
               .score = chatter_ ? 1.0 + std::clamp(ratio, least_ratio, most_score) : std::min(1.0, evidence),
-              .ratio = ratio,
               .rotation_hz = given_ ? speed_.rotation_hz() : 0.0,
               .rotation_std_ratio = speed_.std_ratio(),
-              .known = cut_.known(),
-              .comb_hz = given_ && !cut_.known() ? search_.rotation_hz() : 0.0};
+              .known = follows(),
+              .explained = explained(),
+              .calm_known = calm_known_,
+              .why = why};
+  out.comb_hz = given_ && !explained() ? search_.rotation_hz() : 0.0;
+  if (!chatter_ && out.score > 0.0) {
+    read_by_ = static_cast<Test>(closest - why_.begin());
+    frequency_hz_ = reading_hz(read_by_);
+  }
   if (out.score > 0.0) describe(bad_channels, out);
   return out;
 }

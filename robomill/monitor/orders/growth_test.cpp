@@ -7,15 +7,14 @@ namespace robomill::monitor {
 namespace {
 
 constexpr std::size_t width = 5;  // cells that a line's energy is summed over
-constexpr double growth = 10.0;   // of the energy
 constexpr double suspect_growth = 3.0;
 constexpr double least_share = 0.05;  // of the synchronous energy: what is smaller marks no part
 constexpr double first_s = 0.4;       // that are learnt before anything is judged
 constexpr double usual_memory_s = 1.0, suspect_memory_s = 5.0;
 
-constexpr double family_growth = 3.0, family_share = 0.02, family_of_swing = 0.1;
-constexpr double family_first_s = 0.25, family_memory_s = 2.0;
-constexpr double slower = 0.2;  // is what has grown learnt
+constexpr double family_memory_s = 2.0;
+constexpr double slower = 0.2;        // is what has grown learnt
+constexpr double least_weight = 0.1;  // 0.2 s
 
 }  // namespace
 
@@ -36,7 +35,7 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
   synchronous_ = synchronous;
   suspect_ = false;
   if (static_cast<double>(learnt_) * hop_s_ < first_s) return out;
-  const double cut = std::max(1.0, synchronous / usual_synchronous_);
+  const double cut = std::max(1.0, synchronous / (usual_synchronous_ + 1e-300));
   std::size_t from = 0;
   for (std::size_t i = 0; i + width <= cells_.size(); ++i) {
     double now = 0.0;
@@ -50,10 +49,12 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
                           cells_.begin() + static_cast<std::ptrdiff_t>(i + width)) > cells_[i + width / 2]) {
       continue;
     }
-    if (now <= 0.0 || now < least_share * synchronous || now < suspect_growth * cut * before) continue;
+    const double grown = now / (cut * before + 1e-300);
+    if (now <= 0.0 || now < least_share * synchronous || grown < suspect_growth) continue;
     suspect_ = true;
-    if (now > growth * cut * before && now > out.energy) {
-      out.energy = now;
+    const bool clear = grown > least_growth;
+    if (clear == (out.growth > least_growth) ? now > out.energy : clear) {
+      out = {.energy = now, .growth = grown};
       from = i;
     }
   }
@@ -74,16 +75,14 @@ void GrowthTest::learn() noexcept {
   ++learnt_;
 }
 
-bool FamilyGrowth::step(const ResidualFamily& now, double swing, bool learns) noexcept {
-  const double least = std::max(family_share * now.synchronous, family_of_swing * swing);
-  const bool grown =
-      static_cast<double>(learnt_) * hop_s_ > family_first_s && now.family > std::max(least, family_growth * usual_);
-  if (learns) {
-    ++learnt_;
-    const double share = std::min(1.0, std::max(hop_s_ / family_memory_s, 1.0 / static_cast<double>(learnt_)));
-    usual_ += share * (grown ? slower : 1.0) * (now.family - usual_);
-  }
-  return grown;
+double FamilyPast::growth(double family) const noexcept {
+  return weight_ > least_weight ? family * weight_ / (sum_ + 1e-300) : 0.0;
+}
+
+void FamilyPast::learn(double family) noexcept {
+  const double share = std::min(1.0, hop_s_ / family_memory_s) * (growth(family) >= family_growth ? slower : 1.0);
+  sum_ += share * (family - sum_);
+  weight_ += share * (1.0 - weight_);
 }
 
 }  // namespace robomill::monitor

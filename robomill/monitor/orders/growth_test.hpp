@@ -14,9 +14,11 @@ namespace robomill::monitor {
 class GrowthTest {
  public:
   static constexpr double cell_hz = 10.0;
+  static constexpr double least_growth = 10.0;  ///< of the energy
 
   struct Verdict {
-    double energy = 0.0;        ///< of the strongest line that has grown by 10 dB; 0: none
+    double energy = 0.0;        ///< of the strongest line that has grown by 10 dB, or by 5 dB where none has; 0: none
+    double growth = 0.0;        ///< of its energy, less that of the multiples
     double frequency_hz = 0.0;  ///< of its cell
   };
   /// Cells up to a frequency, and some to spare.
@@ -24,7 +26,7 @@ class GrowthTest {
   GrowthTest(double highest_hz, double hop_s);
   /// Where the energies of a hop go: cells of cell_hz from 0 on, all 0.
   [[nodiscard]] std::span<double> begin() noexcept;
-  /// @param synchronous  energy of the multiples of rotation
+  /// @param synchronous  energy of the multiples of tooth passing
   [[nodiscard]] Verdict step(double synchronous) noexcept;
   /// After step(): the hop belongs to a stable cut.
   void learn() noexcept;
@@ -38,21 +40,22 @@ class GrowthTest {
   bool suspect_ = false;
 };
 
-/// Tests the strongest family of lines {±f_c + k f} against its own past: L > 3 times the mean of L, whose memory is
-/// 2 s (10 s while this holds), once 0.25 s have been learnt, and L > 0.02 S and a tenth of the swing of S: growth so
-/// far below the cut marks no part.
-class FamilyGrowth {
+/// The past of the strongest family of lines {±f_c + k f}: the mean of L with a memory of 2 s, of 10 s while L stands
+/// at five times of it.
+class FamilyPast {
  public:
-  explicit FamilyGrowth(double hop_s) : hop_s_(hop_s) {}
-  /// @param swing   of S in 0.3 s
-  /// @param learns  false: the past stays as it is
-  [[nodiscard]] bool step(const ResidualFamily& now, double swing, bool learns) noexcept;
-  void forget() noexcept { learnt_ = 0; }
+  static constexpr double family_growth = 5.0;
+
+  explicit FamilyPast(double hop_s) : hop_s_(hop_s) {}
+  /// L against its past; 0 until a fifth of a second has been learnt.
+  [[nodiscard]] double growth(double family) const noexcept;
+  /// The hop belongs to a stable cut, or to the air.
+  void learn(double family) noexcept;
+  void forget() noexcept { sum_ = weight_ = 0.0; }
 
  private:
   double hop_s_;
-  double usual_ = 0.0;
-  std::size_t learnt_ = 0;  // hops
+  double sum_ = 0.0, weight_ = 0.0;  // weight: 1 after a long time
 };
 
 }  // namespace robomill::monitor

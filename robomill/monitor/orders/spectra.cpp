@@ -11,7 +11,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double near_block = 4.0;         // 1/T of a block, to each side, that a multiple of rotation shows
-constexpr double enough_hz = 10240.0;      // of the sample rate
 constexpr std::size_t taps_a_factor = 24;  // of the low-pass, for each sample left out
 constexpr double most_lines = 20.0;        // M
 constexpr double peaked = 0.53;            // ∫h⁴/(∫h²)²
@@ -99,7 +98,7 @@ std::size_t at_multiple(std::span<const float> power, std::span<const float> pla
   return count;
 }
 
-Spectra::Spectra(double sample_rate_hz, std::size_t channels)
+Spectra::Spectra(double sample_rate_hz, std::size_t channels, std::span<const double> windows_s, double enough_hz)
     : channels_(channels), factor_(std::max<std::size_t>(1, static_cast<std::size_t>(sample_rate_hz / enough_hz))) {
   rate_hz_ = sample_rate_hz / static_cast<double>(factor_);
   if (factor_ > 1) {
@@ -165,9 +164,9 @@ void Spectra::push(std::span<const float> samples, std::size_t frames) noexcept 
   }
 }
 
-void Spectra::course(std::size_t channel, double frequency_hz, double rotation_hz,
+void Spectra::course(std::size_t window_index, std::size_t channel, double frequency_hz, double rotation_hz,
                      std::span<double> blocks) const noexcept {
-  const Window& window = windows_.back();
+  const Window& window = windows_[window_index];
   const Spectrum& spectrum = window.spectra[channel];
   const float* last = ring_.data() + 2 * channel * size_ + at_ + size_ - window.length;
   const std::size_t each = window.length / blocks.size();
@@ -185,7 +184,8 @@ void Spectra::course(std::size_t channel, double frequency_hz, double rotation_h
     sum *= 2.0 / static_cast<double>(each);
     const double middle = begins + 0.5 * static_cast<double>(each - 1);
     const double first = rotation_hz > 0.0 ? std::ceil((frequency_hz - near_hz) / rotation_hz) : 0.0;
-    for (double k = std::max(1.0, first); rotation_hz > 0.0 && k * rotation_hz <= frequency_hz + near_hz; ++k) {
+    const double last_hz = std::min(frequency_hz + near_hz, 0.5 * rate_hz_);
+    for (double k = std::max(1.0, first); rotation_hz > 0.0 && k * rotation_hz <= last_hz; ++k) {
       const double apart_hz = k * rotation_hz - frequency_hz;
       if (std::abs(apart_hz) * spectrum.seconds < on_an_order) continue;
       const double half_turn = pi * apart_hz / rate_hz_;  // a sample
@@ -197,19 +197,27 @@ void Spectra::course(std::size_t channel, double frequency_hz, double rotation_h
   }
 }
 
-void Spectra::transform() noexcept {
-  for (Window& window : windows_) {
-    const std::size_t half = window.length / 2;
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const float* last = ring_.data() + 2 * c * size_ + at_ + size_ - window.length;
-      // The middle stands at 0, so that the phases are its own.
-      std::fill(in_.begin() + static_cast<std::ptrdiff_t>(half + 1),
-                in_.begin() + static_cast<std::ptrdiff_t>(window.padded - half), 0.0F);
-      for (std::size_t i = 0; i <= half; ++i) in_[i] = window.shape[half + i] * last[half + i];
-      for (std::size_t i = 0; i < half; ++i) in_[window.padded - half + i] = window.shape[i] * last[i];
-      window.fft.transform_real(in_.data(), window.spectra[c].line.data());
-      window.spectra[c].line[0] = {};
-    }
+void Spectra::transform(std::size_t window_index) noexcept {
+  Window& window = windows_[window_index];
+  const std::size_t half = window.length / 2;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const float* last = ring_.data() + 2 * c * size_ + at_ + size_ - window.length;
+    // The middle stands at 0, so that the phases are its own.
+    std::fill(in_.begin() + static_cast<std::ptrdiff_t>(half + 1),
+              in_.begin() + static_cast<std::ptrdiff_t>(window.padded - half), 0.0F);
+    for (std::size_t i = 0; i <= half; ++i) in_[i] = window.shape[half + i] * last[half + i];
+    for (std::size_t i = 0; i < half; ++i) in_[window.padded - half + i] = window.shape[i] * last[i];
+    window.fft.transform_real(in_.data(), window.spectra[c].line.data());
+    window.spectra[c].line[0] = {};
+  }
+}
+
+void Spectra::power(std::size_t window, std::uint64_t bad_channels, std::span<float> out) const noexcept {
+  std::ranges::fill(out, 0.0F);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    if ((bad_channels >> c & 1U) != 0) continue;
+    const std::vector<std::complex<float>>& line = windows_[window].spectra[c].line;
+    for (std::size_t i = 1; i < out.size(); ++i) out[i] += std::norm(line[i]);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <complex>
 #include <cstddef>
+#include <cstdint>
 #include <kissfft.hh>
 #include <span>
 #include <vector>
@@ -18,7 +19,7 @@ inline constexpr double on_an_order = 0.75;
 
 /// Orders of a slower rotation stand closer together than a window tells apart: they are not looked for, and what a hop
 /// costs does not follow the speed.
-inline constexpr double lowest_rotation_hz = 5.0;
+inline constexpr double lowest_rotation_hz = 4.0;
 
 /// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of
 /// amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the middle.
@@ -68,25 +69,29 @@ struct WindowEnergy {
 std::size_t at_multiple(std::span<const float> power, std::span<const float> places, int k, std::size_t last,
                         std::span<float> out) noexcept;
 
-/// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole
-/// number, to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.
+/// The spectra of the last moments of several channels. A sample rate above twice `enough_hz` is reduced by a whole
+/// number, to that and more, behind a low-pass. Nothing is allocated after construction.
 class Spectra {
  public:
-  static constexpr std::array<double, 2> windows_s = {0.3, 0.15};
-
-  Spectra(double sample_rate_hz, std::size_t channels);
+  /// @param windows_s  lengths, the longest first
+  Spectra(double sample_rate_hz, std::size_t channels, std::span<const double> windows_s, double enough_hz = 10240.0);
   /// @param samples  all channels, channel after channel, `frames` each
   void push(std::span<const float> samples, std::size_t frames) noexcept;
-  /// Fills the spectra.
-  void transform() noexcept;
+  /// Fills the spectra of a window.
+  void transform(std::size_t window) noexcept;
+  /// Σ |X|² over the channels, line by line, of a window that was transformed.
+  /// @param bad_channels  bit c: left out
+  void power(std::size_t window, std::uint64_t bad_channels, std::span<float> out) const noexcept;
   [[nodiscard]] const Spectrum& spectrum(std::size_t window, std::size_t channel) const noexcept {
     return windows_[window].spectra[channel];
   }
-  /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest
-  /// first, without what the multiples of a rotation hold there whose amplitude transform() has found; 0: none.
-  void course(std::size_t channel, double frequency_hz, double rotation_hz, std::span<double> blocks) const noexcept;
+  /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of a window, oldest first,
+  /// without what the multiples of a rotation hold there whose amplitude transform() has found; 0: none.
+  void course(std::size_t window, std::size_t channel, double frequency_hz, double rotation_hz,
+              std::span<double> blocks) const noexcept;
   /// The highest frequency that counts [Hz]; where the rate is reduced, a line there is shown 1.2 dB too small.
   [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
+  [[nodiscard]] std::size_t channels() const noexcept { return channels_; }
   /// Seconds pushed since construction or reset().
   [[nodiscard]] double past_s() const noexcept { return static_cast<double>(pushed_) / rate_hz_; }
   void reset() noexcept;

@@ -21,6 +21,8 @@ using namespace robomill::monitor;
 using monitor::testing::spectra_of;
 using monitor::testing::sum_of;
 using monitor::testing::Tone;
+using monitor::testing::transform_all;
+using monitor::testing::usual_windows_s;
 
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double rate_hz = 10240.0;
@@ -76,9 +78,9 @@ TEST(Spectra, ShowASineByTheKernelWithThePhaseOfTheMiddle) {
     const Tone tone{random.uniform(200.0, 4800.0), random.uniform(0.1, 10.0), random.uniform(0.0, turn)};
     const std::vector<float> x = sum_of(std::array{tone}, rate_hz, 0.31 + 0.01 * run);
     const Spectra spectra = spectra_of(x, rate_hz);
-    for (std::size_t w = 0; w < Spectra::windows_s.size(); ++w) {
+    for (std::size_t w = 0; w < usual_windows_s.size(); ++w) {
       const Spectrum& own = spectra.spectrum(w, 0);
-      EXPECT_NEAR(own.seconds, Spectra::windows_s[w], 2.5 / rate_hz);
+      EXPECT_NEAR(own.seconds, usual_windows_s[w], 2.5 / rate_hz);
       EXPECT_LE(own.step_hz * own.seconds, 0.5);
       const double middle_s = (static_cast<double>(x.size()) - 0.5 * own.seconds * rate_hz) / rate_hz;
       const std::complex<double> amplitude = std::polar(tone.amplitude, turn * tone.hz * middle_s + tone.phase);
@@ -101,7 +103,7 @@ TEST(Spectra, EnergyIsTheSumOfTheSquaresOfAmplitudes) {
       squares += std::pow(tones.back().amplitude, 2);
     }
     const Spectra spectra = spectra_of(sum_of(tones, rate_hz, 0.4), rate_hz);
-    for (std::size_t w = 0; w < Spectra::windows_s.size(); ++w) {
+    for (std::size_t w = 0; w < usual_windows_s.size(); ++w) {
       EXPECT_NEAR(energy_of(spectra.spectrum(w, 0)), squares, 2e-3 * squares);
     }
   }
@@ -130,7 +132,7 @@ TEST(Spectra, PeaksStandWhereTheSinesAre) {
 TEST(Spectra, ReducedRatesKeepWhatPassesAndFoldNothingIn) {
   Random random(5);
   for (const double high_hz : {20480.0, 44100.0, 48000.0, 96000.0}) {
-    const double highest_hz = Spectra(high_hz, 1).highest_hz();
+    const double highest_hz = Spectra(high_hz, 1, usual_windows_s).highest_hz();
     const double reduced_hz = high_hz / std::floor(high_hz / 10240.0);
     EXPECT_NEAR(highest_hz, 0.425 * reduced_hz, 1e-6);
     for (int run = 0; run < 6; ++run) {
@@ -154,7 +156,7 @@ TEST(Spectra, TheCourseOfADecayingSineFallsAsItDoes) {
   for (int run = 0; run < 20; ++run) {
     const double hz = random.uniform(800.0, 4000.0), decay_s = random.uniform(0.01, 0.3);
     std::vector<float> x = sum_of(std::array{Tone{hz, 2.0, random.uniform(0.0, turn)}}, rate_hz, 0.3);
-    Spectra spectra(rate_hz, 2);
+    Spectra spectra(rate_hz, 2, usual_windows_s);
     spectra.push(
         [&] {
           std::vector<float> both = x;
@@ -165,8 +167,8 @@ TEST(Spectra, TheCourseOfADecayingSineFallsAsItDoes) {
         }(),
         x.size());
     std::array<double, 6> steady = {}, falling = {};
-    spectra.course(0, hz, 0.0, steady);
-    spectra.course(1, hz, 0.0, falling);
+    spectra.course(1, 0, hz, 0.0, steady);
+    spectra.course(1, 1, hz, 0.0, falling);
     for (std::size_t b = 0; b < 6; ++b) {
       EXPECT_NEAR(steady[b], 4.0, 0.1);
       if (b == 0) continue;
@@ -190,12 +192,12 @@ TEST(Spectra, TheCourseLeavesTheOrdersOut) {
       const double t = static_cast<double>(i) / rate_hz - 0.25;
       if (t > 0.0) x[i] += static_cast<float>(0.7 * std::exp(-t / 0.02) * std::sin(turn * knock_hz * t));
     }
-    Spectra spectra(rate_hz, 1);
+    Spectra spectra(rate_hz, 1, usual_windows_s);
     spectra.push(x, x.size());
-    spectra.transform();
+    transform_all(spectra);
     const auto falls = [&](double without_hz) {
       std::array<double, 6> course = {};
-      spectra.course(0, knock_hz, without_hz, course);
+      spectra.course(1, 0, knock_hz, without_hz, course);
       return course.back() < 0.5 * *std::ranges::max_element(course);
     };
     fall_beside += falls(rotation_hz) ? 1 : 0;
@@ -205,11 +207,35 @@ TEST(Spectra, TheCourseLeavesTheOrdersOut) {
   EXPECT_LE(fall_among, 60);
 }
 
+TEST(Spectra, PowerIsThatOfTheChannelsThatAreGood) {
+  const std::vector<float> x = sum_of(std::array{Tone{700.0}}, rate_hz, 0.3, 0.1);
+  std::vector<float> two = x;
+  for (const float sample : x) two.push_back(2.0F * sample);
+  Spectra spectra(rate_hz, 2, usual_windows_s);
+  spectra.push(two, x.size());
+  transform_all(spectra);
+  std::vector<float> power(spectra.spectrum(0, 0).line.size());
+  const auto at = static_cast<std::size_t>(std::lround(700.0 / spectra.spectrum(0, 0).step_hz));
+  spectra.power(0, 0, power);
+  const float both = power[at];
+  spectra.power(0, 1, power);
+  EXPECT_NEAR(both, 1.25 * power[at], 1e-5 * both);
+  EXPECT_EQ(power[0], 0.0F);
+}
+
+// Long windows of a slow spindle need no high frequencies: fewer samples cost less.
+TEST(Spectra, AReducedRateSavesTheHighFrequencies) {
+  const Spectra slow(10240.0, 1, std::array{1.0, 0.5}, 2560.0);
+  EXPECT_NEAR(slow.highest_hz(), 0.425 * 2560.0, 1e-6);
+  EXPECT_NEAR(slow.spectrum(0, 0).seconds, 1.0, 2.5 / 2560.0);
+  EXPECT_LT(slow.spectrum(0, 0).line.size(), 4097U);
+}
+
 TEST(Spectra, AreTheSameInAnyBlocksAndAfterReset) {
   for (const double any_hz : {8000.0, 44100.0}) {
     const std::vector<float> x = sum_of(std::array{Tone{700.0}}, any_hz, 0.5, 0.3);
     const Spectra whole = spectra_of(x, any_hz);
-    Spectra pieces(any_hz, 1);
+    Spectra pieces(any_hz, 1, usual_windows_s);
     Random random(7);
     for (int pass = 0; pass < 2; ++pass) {
       std::size_t at = 0;
@@ -218,9 +244,9 @@ TEST(Spectra, AreTheSameInAnyBlocksAndAfterReset) {
         pieces.push(std::span(x).subspan(at, n), n);
         at += n;
       }
-      pieces.transform();
+      transform_all(pieces);
       EXPECT_NEAR(pieces.past_s(), 0.5, 1e-3);
-      for (std::size_t w = 0; w < Spectra::windows_s.size(); ++w) {
+      for (std::size_t w = 0; w < usual_windows_s.size(); ++w) {
         EXPECT_TRUE(pieces.spectrum(w, 0).line == whole.spectrum(w, 0).line);
       }
       pieces.reset();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "robomill/base/error.hpp"
+#include "robomill/monitor/files/machine_json.hpp"
 
 namespace robomill::serve {
 
@@ -38,6 +39,7 @@ MonitorInput open_monitor_input(const Folder& folder, const std::string& config,
     if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = out.recording->sample_rate_hz();
     if (file.options.full_scale <= 0.0) file.options.full_scale = out.recording->full_scale();
   }
+  monitor::load_machine(file);
   monitor::validate(file);
   return out;
 }

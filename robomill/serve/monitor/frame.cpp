@@ -45,6 +45,7 @@ void join(MonitorFrame& frame, const MonitorFrame& later, bool alarm_below) {
     out.mode = frame.mode;
     out.suggested_spindle_speed_rad_per_s = frame.suggested_spindle_speed_rad_per_s;
     out.no_speed = frame.no_speed;
+    out.why = frame.why;
   }
   const bool worse = alarm_below ? frame.score < later.score : frame.score > later.score;
   if (worse || std::isnan(later.score)) {

@@ -28,6 +28,7 @@ struct MonitorFrame {
   modal::ModeId mode = {};
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   monitor::NoSpeed no_speed = monitor::NoSpeed::none;
+  monitor::Explanation why = {};      ///< beside the frame in messages: the history of frames does without
   std::uint32_t faults = 0;           ///< of monitor::Fault: all of them
   double compute_s = 0.0;             ///< of the decision that took longest
   double pace = NAN;                  ///< seconds of the stream a second of the clock

@@ -6,6 +6,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_json.hpp"
+#include "robomill/monitor/files/explanation_schema.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -42,7 +43,8 @@ Json MonitorHistory::Row::json() const {
               {"no_speed", text_or_null(name_in(monitor::no_speed_names, alarm.no_speed))},
               {"what", text_or_null(what)},
               {"count", alarm.count},
-              {"message", text_or_null(message)}};
+              {"message", text_or_null(message)},
+              {"why", monitor::explanation_json(alarm.why)}};
   modal::set_mode(out, alarm.mode);
   return out;
 }

@@ -7,6 +7,20 @@
 namespace robomill::serve {
 namespace monitor_history_test {
 
+TEST(MonitorHistory, SaysWhyAnAlarmBegan) {
+  MonitorHistory history({"ax"}, false);
+  monitor::Decision decision;
+  decision.state = monitor::State::chatter;
+  decision.why = {.test = monitor::Test::growth, .hops = 3, .enough_hops = 3};
+  history.add(decision, 1.0, 1.0);
+  decision.why = {.test = monitor::Test::ratio, .hops = 6, .enough_hops = 6};
+  history.add(decision, 1.025, 1.025);
+  EXPECT_EQ(history.rows()[0]["why"]["test"], "growth");
+  decision.state = monitor::State::blind;
+  history.add(decision, 2.0, 2.0);
+  EXPECT_TRUE(history.rows()[0]["why"].is_null());
+}
+
 TEST(MonitorHistory, KeepsTheLastRows) {
   MonitorHistory history({"ax"}, false);
   monitor::MonitorEvent lost;

@@ -13,6 +13,7 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/inputs.hpp"
+#include "robomill/monitor/files/explanation_schema.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/monitor/paced_source.hpp"
 
@@ -200,6 +201,7 @@ void MonitorSession::decide(const monitor::Decision& decision, double time_s, do
   frame.spindle_speed_rad_per_s = decision.spindle_speed_rad_per_s;
   frame.chatter_frequency_hz = decision.chatter_frequency_hz;
   frame.chatter_frequency_std_hz = decision.chatter_frequency_std_hz;
+  frame.why = decision.why;
   frame.faults = decision.faults;
   frame.compute_s = compute_s;
   put(frame);
@@ -238,7 +240,7 @@ void MonitorSession::take_overload(const monitor::MonitorEvent& event) {
     frame.time_s = event.time_s;
     frame.state = event.decision.state;
     frame.reason = event.decision.reason;
-    Json message = {{"id", options_.id}, {"frame", frame_json(frame)}};
+    Json message = {{"id", options_.id}, {"frame", frame_json(frame)}, {"why", nullptr}};
     {
       const std::lock_guard lock(mutex_);
       frames_.add(frame);
@@ -271,7 +273,7 @@ void MonitorSession::publish_due(bool last) {
   frame.clock_s = clock_s();
   frame.pace = pace(frame);
   frame.amplitude = spectrum_.take();
-  Json message = {{"id", options_.id}, {"frame", frame_json(frame)}};
+  Json message = {{"id", options_.id}, {"frame", frame_json(frame)}, {"why", monitor::explanation_json(frame.why)}};
   {
     const std::lock_guard lock(mutex_);
     frames_.add(frame);
@@ -291,7 +293,10 @@ void MonitorSession::publish_rest() {
       if (changed.empty() || frames_.frames().empty()) return;
       MonitorFrame frame = frames_.frames().back();
       frame.amplitude.clear();
-      message = {{"id", options_.id}, {"frame", frame_json(frame)}, {"alarms", std::move(changed)}};
+      message = {{"id", options_.id},
+                 {"frame", frame_json(frame)},
+                 {"why", monitor::explanation_json(frame.why)},
+                 {"alarms", std::move(changed)}};
       message.update(counts());
     }
     send("monitor", io::plain_text(message));
@@ -328,12 +333,14 @@ Json MonitorSession::summary() const {
       {"channels", input_.file.columns.channels},
       {"sample_rate_hz", io::number(options.sample_rate_hz)},
       {"teeth", teeth_ > 0 ? Json(teeth_) : Json(nullptr)},
-      {"frame", nullptr}};
+      {"frame", nullptr},
+      {"why", nullptr}};
   out.update(counts());
   if (!frames_.frames().empty()) {
     MonitorFrame frame = frames_.frames().back();
     frame.amplitude.clear();
     out["frame"] = frame_json(frame);
+    out["why"] = monitor::explanation_json(frame.why);
   }
   return out;
 }

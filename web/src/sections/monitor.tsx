@@ -5,6 +5,7 @@ import { chatterNotes, inputFaultText, findings, frequencyText, reasonText } fro
 import { Bullets, DetailsTable, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
+import { Why } from './why';
 
 function frequencyOf(event: MonitorEvent): string {
   return withDeviation(event.chatter_frequency_hz, event.chatter_frequency_std_hz, 1, 1);
@@ -89,6 +90,7 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
         { heading: 'Mode', optional: true, cell: (alarm) => modeName(alarm) || dash },
         { heading: 'Quiet speed (rpm)', number: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
         { heading: 'Note', optional: true, cell: (alarm) => chatterNotes(alarm).join('; ') },
+        { heading: 'Why', optional: true, cell: ({ why }) => (why ? <Why why={why} alarm /> : '') },
       ]}
       rows={alarms}
     />
@@ -110,6 +112,7 @@ function EventsTable({ events }: { events: MonitorEvent[] }) {
         { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
         { heading: 'Command', optional: true, cell: commandOf },
         { heading: 'Note', optional: true, cell: noteOf },
+        { heading: 'Why', optional: true, cell: ({ why, state }) => (why ? <Why why={why} alarm={state === 'chatter'} /> : '') },
       ]}
       rows={events}
       rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}

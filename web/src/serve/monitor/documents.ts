@@ -1,5 +1,5 @@
 // What page and server say to each other of spindles that are monitored.
-import type { Assumption, MonitorAlarm, MonitorState, Num } from '../../documents';
+import type { Assumption, MonitorAlarm, MonitorState, MonitorWhy, Num } from '../../documents';
 import type { Fault } from '../documents';
 
 type Chatter = Pick<MonitorAlarm, 'chatter_frequency_hz' | 'chatter_frequency_std_hz' | 'mode' | 'mode_of' | 'suggested_spindle_speed_rpm' | 'no_speed'>;
@@ -21,7 +21,7 @@ export interface MonitorFrame extends Chatter {
 }
 
 /** A stay in chatter, one whose state is undetermined, or a notice about the samples. */
-export interface MonitorRow extends Chatter, Pick<MonitorAlarm, 'low_frequency_hz' | 'high_frequency_hz' | 'channel' | 'hidden' | 'line_frequencies_hz'> {
+export interface MonitorRow extends Chatter, Pick<MonitorAlarm, 'low_frequency_hz' | 'high_frequency_hz' | 'channel' | 'hidden' | 'line_frequencies_hz' | 'why'> {
   number: number; // from 1
   kind: 'chatter' | 'blind' | 'notice';
   clock_s: number;
@@ -55,6 +55,7 @@ export interface MonitorSummary extends MonitorCounts {
   sample_rate_hz: number;
   teeth: Num;
   frame: MonitorFrame | null;
+  why: MonitorWhy | null; // the frame's state is what it is
 }
 
 export interface MonitorSession extends MonitorSummary {
@@ -69,5 +70,6 @@ export interface MonitorSession extends MonitorSummary {
 export interface MonitorMessage extends MonitorCounts {
   id: number;
   frame: MonitorFrame;
+  why: MonitorWhy | null;
   alarms: MonitorRow[]; // those that changed, newest first
 }

@@ -2,7 +2,9 @@
 import type { ComponentChildren } from 'preact';
 import { renderToString } from 'preact-render-to-string';
 import { describe, expect, it, vi } from 'vitest';
+import type { MonitorWhy } from '../../documents';
 import { dark, light } from '../../figures/theme';
+import { Why } from '../../sections/why';
 import { openApi } from '../api';
 import { ServeContext } from '../context';
 import type { FileEntry, FolderState } from '../documents';
@@ -63,6 +65,7 @@ const row: MonitorRow = {
   what: null,
   count: 0,
   message: null,
+  why: null,
 };
 const summary: MonitorSummary = {
   id: 2,
@@ -77,11 +80,23 @@ const summary: MonitorSummary = {
   sample_rate_hz: 10240,
   teeth: 2,
   frame: quiet,
+  why: null,
   alarm_count: 3,
   decision_count: 400,
   dropped_hops: 0,
   lost_blocks: 2,
   blind_s: { gap: 2.5 },
+};
+const why: MonitorWhy = {
+  test: 'ratio',
+  hops: 6,
+  of: 6,
+  speed_belief: 0.41,
+  conditions: [
+    { quantity: 'asynchronous_ratio', meaning: 'energy beside the orders', shown_in: null, value: 0.31, at_least: 0.2, holds: true },
+    { quantity: 'above_quiet', meaning: 'above the quietest', shown_in: 'dB', value: 100, at_least: 10, holds: true },
+    { quantity: 'order_change', meaning: 'movement of the order beside it', shown_in: null, value: 0.01, at_most: 0.005, holds: false },
+  ],
 };
 const edges_hz = [5, 255, 505, 1005, 5005];
 const at = (clock_s: number, more: Partial<MonitorFrame> = {}): MonitorFrame => ({ ...quiet, clock_s, ...more });
@@ -255,6 +270,21 @@ it('shows what was assumed and what its files say unusually', () => {
   expect(renderToString(<Basis assumed={[]} warnings={[]} />)).toBe('');
 });
 
+it('explains an alarm, and silence', () => {
+  const cells = (html: string) => [...html.matchAll(/<td[^>]*>(.*?)<\/td>/g)].map(([, cell]) => cell);
+  const alarm = renderToString(<Why why={why} alarm />);
+  expect(alarm).toContain('<summary>by ratio, 6 of 6 hops</summary>');
+  expect(cells(alarm)).toEqual([
+    'energy beside the orders', '0.31', 'at least 0.2', 'yes',
+    'above the quietest', '20.0 dB', 'at least 10.0 dB', 'yes',
+    'change of the speed', '0.01', 'at most 0.005', '<strong>no</strong>',
+  ]);
+  expect(renderToString(<HistoryTable rows={[{ ...row, why }, row]} summary={summary} />)).toContain('by ratio, 6 of 6 hops');
+  expect(renderToString(<HistoryTable rows={[row]} summary={summary} />)).not.toContain('>Why<');
+  const silent = renderToString(<Now summary={{ ...summary, why: { ...why, hops: 2 } }} />);
+  expect(silent).toContain('closest: ratio, 2 of 6 hops, 2 of 3 conditions hold');
+});
+
 describe('the view', () => {
   it('names states by words and colours', () => {
     const spindles: MonitorSummary[] = [
@@ -291,8 +321,8 @@ describe('the view', () => {
     expect(factsOf({ ...summary, frame: null })).toHaveLength(1);
   });
   it('follows what is said of a spindle', () => {
-    const message: MonitorMessage = { id: 2, frame: chatter, alarms: [row], alarm_count: 4, decision_count: 401, dropped_hops: 0, lost_blocks: 2, blind_s: {} };
-    expect(withMessage(summary, message)).toMatchObject({ frame: chatter, alarm_count: 4, input: 'cut.wav' });
+    const message: MonitorMessage = { id: 2, frame: chatter, why, alarms: [row], alarm_count: 4, decision_count: 401, dropped_hops: 0, lost_blocks: 2, blind_s: {} };
+    expect(withMessage(summary, message)).toMatchObject({ frame: chatter, why, alarm_count: 4, input: 'cut.wav' });
     expect(withMessage(summary, message)).not.toHaveProperty('alarms');
     expect(withMessage({ ...summary, frame: at(9) }, message).frame!.clock_s).toBe(9); // an old one
     expect(withMessage(summary, undefined)).toBe(summary);

@@ -4,6 +4,7 @@ import { duration, inputFaultText, noSpeedText, reasonText } from '../../monitor
 import { Facts, KeyFigures, Table, WarningBox, type KeyFigure } from '../../parts';
 import { Choice } from '../../plot';
 import { AssumedBox } from '../../sections/assumed';
+import { Why } from '../../sections/why';
 import { dash, fixed, modeName, significant } from '../../text';
 import type { Fact } from '../../documents';
 import { useAnswer, useServe } from '../context';
@@ -60,7 +61,7 @@ export function factsOf(summary: MonitorSummary): Fact[] {
 }
 
 export function Now({ summary }: { summary: MonitorSummary }) {
-  const { error, frame } = summary;
+  const { error, frame, why } = summary;
   return (
     <section aria-label="Now" data-panel="monitor-now">
       <h2>
@@ -69,6 +70,7 @@ export function Now({ summary }: { summary: MonitorSummary }) {
       {error !== null && <FaultLine fault={error} alert />}
       {frame !== null && !isOver(summary) && <KeyFigures figures={keyFigures(frame)} />}
       <Facts facts={factsOf(summary)} />
+      {why && frame && <Why why={why} alarm={frame.state === 'chatter'} />}
     </section>
   );
 }
@@ -90,6 +92,7 @@ export function HistoryTable({ rows, summary }: { rows: MonitorRow[]; summary: P
         { heading: 'Suggested speed (rpm)', number: true, optional: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
         { heading: 'Highest score', number: true, optional: true, cell: ({ score }) => significant(score) },
         { heading: 'Note', long: true, optional: true, cell: rowNote },
+        { heading: 'Why', optional: true, cell: ({ why }) => (why ? <Why why={why} alarm /> : '') },
       ]}
     />
   );
