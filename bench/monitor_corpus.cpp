@@ -6,18 +6,23 @@
 // monitor_corpus --arms [first seed] [cuts a sensor]: the same of robot arms' cuts with slow spindles, by sensor,
 // sample rate and speed; and how many of the delays are within 8 turns of the spindle or half a second, whichever is
 // longer.
+// monitor_corpus --learnt [first seed] [cuts a class]: cuts with tones, a run-up, a microphone, and air, without and
+// with the machine that was learnt from three recordings in air of the same machine.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <map>
+#include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/monitor/machine.hpp"
 #include "testing/monitor/arm_cuts.hpp"
 #include "testing/monitor/corpus.hpp"
 #include "testing/monitor/ideal_observer.hpp"
@@ -233,11 +238,56 @@ void arms(std::uint64_t first, std::uint64_t count) {
   print("RMS 5 sigma", five_sigma);
 }
 
+/// Of the recordings those in which the monitor raises no alarm; null: of none.
+std::shared_ptr<const monitor::Machine> learnt_from(const std::vector<RecordedCut>& air, int& rejected) {
+  std::vector<monitor::CalmRecording> calm;
+  for (const RecordedCut& recording : air) {
+    const monitor::CalmRecording each{.samples = recording.samples,
+                                      .spindle_speed_rad_per_s = recording.hint_rad_per_s};
+    try {
+      (void)monitor::learn_machine(std::span(&each, 1), monitor_options(recording));
+      calm.push_back(each);
+    } catch (const InvalidInput&) {
+      ++rejected;
+    }
+  }
+  if (calm.empty()) return nullptr;
+  return std::make_shared<const monitor::Machine>(monitor::learn_machine(calm, monitor_options(air.front())));
+}
+
+void learnt(std::uint64_t first, std::uint64_t count) {
+  constexpr int recordings = 3;
+  Scores without, with;
+  std::map<std::string, int> rejected;
+  for (const auto& [name, kind] : machine_class_names) {
+    if (kind != MachineClass::tones && kind != MachineClass::run_up_down && kind != MachineClass::microphone &&
+        kind != MachineClass::air) {
+      continue;
+    }
+    for (std::uint64_t seed = first; seed < first + count; ++seed) {
+      const MachineWithAir drawn = machine_with_air(kind, seed, recordings);
+      monitor::MonitorOptions options = monitor_options(drawn.cut);
+      const CutScore before = score(drawn.cut, decisions_with(options, drawn.cut));
+      options.machine = learnt_from(drawn.air, rejected[std::string(name)]);
+      const CutScore after = score(drawn.cut, decisions_with(options, drawn.cut));
+      for (const std::string& group : {std::string("all"), std::string(name)}) {
+        without[group].push_back(before);
+        with[group].push_back(after);
+      }
+    }
+  }
+  print("without a machine", without);
+  print("with one that was learnt", with);
+  for (const auto& [name, of] : rejected) {
+    fmt::print("{}: {} of {} recordings in air rejected\n", name, of, recordings * count);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string_view which = argc > 1 ? argv[1] : "";
-  const bool named = which == "--machines" || which == "--arms";
+  const bool named = which == "--machines" || which == "--arms" || which == "--learnt";
   const int at = named ? 2 : 1;
   const std::uint64_t first = argc > at ? std::strtoull(argv[at], nullptr, 10) : 1;
   const std::uint64_t all = named ? 20 : corpus_size;
@@ -246,6 +296,8 @@ int main(int argc, char** argv) {
     machines(first, count);
   } else if (which == "--arms") {
     arms(first, count);
+  } else if (which == "--learnt") {
+    learnt(first, count);
   } else {
     corpus(first, count);
   }

@@ -8,8 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "robomill/monitor/monitor.hpp"
-
 namespace robomill::monitor::testing {
 namespace {
 
@@ -156,7 +154,7 @@ Summary summarise(std::span<const CutScore> scores) {
   return out;
 }
 
-std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut) {
+MonitorOptions monitor_options(const RecordedCut& cut) {
   MonitorOptions options;
   options.sample_rate_hz = cut.sample_rate_hz;
   options.channels = cut.channels;
@@ -164,6 +162,14 @@ std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut) {
   options.pulses_per_revolution = cut.pulses_per_revolution;
   options.spindle_speed_rad_per_s = cut.hint_rad_per_s;
   options.teeth = cut.teeth;
+  return options;
+}
+
+std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut) {
+  return decisions_with(monitor_options(cut), cut);
+}
+
+std::vector<DetectorDecision> decisions_with(const MonitorOptions& options, const RecordedCut& cut) {
   ChatterMonitor monitor(options);
   std::vector<DetectorDecision> out;
   std::span<const float> rest = cut.samples;

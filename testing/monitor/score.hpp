@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/monitor/monitor.hpp"
 #include "testing/monitor/recording.hpp"
 
 /// How well a detector finds the chatter of the corpus.
@@ -52,8 +53,11 @@ struct RateInterval {
 /// The share-th of sorted values, by straight lines; NaN of none. Values that are NaN do not count.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
-/// ChatterMonitor as it stands, given the recording's hint and teeth, and its tachometer where it has one.
+/// What ChatterMonitor is given of a recording: its hint and teeth, and its tachometer where it has one.
+[[nodiscard]] MonitorOptions monitor_options(const RecordedCut& cut);
+/// ChatterMonitor as it stands, so given.
 [[nodiscard]] std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut);
+[[nodiscard]] std::vector<DetectorDecision> decisions_with(const MonitorOptions& options, const RecordedCut& cut);
 /// The same of without_tachometer(cut).
 [[nodiscard]] std::vector<DetectorDecision> monitor_decisions_without_tachometer(const RecordedCut& cut);
 /// The recording with its tachometer's channel left out.
