@@ -116,7 +116,7 @@ struct Condition {
 /// Why a decision is what it is: of the test that holds the alarm, or came closest to one, all conditions.
 struct Explanation {
   Test test = Test::none;
-  int hops = 0, enough_hops = 0;  ///< of the last 8 (growth: in a row) in which it held; of those an alarm takes
+  int hops = 0, enough_hops = 0;  ///< of the last 8 (growth: in a row) in which it held, of those an alarm takes
   float speed_belief =
       0.0F;  ///< in the tracked speed, 0 to 1; below 0.12 only `dominant`, `slow_ratio` and `runaway` are armed
   int conditions = 0;

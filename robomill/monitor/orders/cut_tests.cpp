@@ -370,7 +370,8 @@ void CutTests::decide(std::uint64_t bad_channels, bool still) noexcept {
     holds = holds && !(rings && in_each);
     held_[at] = static_cast<std::uint8_t>(held_[at] << 1U | (holds ? 1U : 0U));
     if (test == Test::growth) growing_ = holds ? growing_ + 1 : 0;
-    why.hops = test == Test::growth ? static_cast<int>(growing_) : std::popcount(held_[at]);
+    const int hops = test == Test::growth ? static_cast<int>(growing_) : std::popcount(held_[at]);
+    why.hops = std::min(hops, why.enough_hops);
     if (begins == Test::none && holds && !rings && why.hops >= why.enough_hops) begins = test;
   }
   if (!chatter_) {
