@@ -277,7 +277,7 @@ it('explains an alarm, and silence', () => {
   expect(cells(alarm)).toEqual([
     'energy beside the orders', '0.31', 'at least 0.2', 'yes',
     'above the quietest', '20.0 dB', 'at least 10.0 dB', 'yes',
-    'change of the speed', '0.01', 'at most 0.005', '<strong>no</strong>',
+    'movement of the order beside it', '0.01', 'at most 0.005', '<strong>no</strong>',
   ]);
   expect(renderToString(<HistoryTable rows={[{ ...row, why }, row]} summary={summary} />)).toContain('by ratio, 6 of 6 hops');
   expect(renderToString(<HistoryTable rows={[row]} summary={summary} />)).not.toContain('>Why<');
