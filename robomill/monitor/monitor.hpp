@@ -164,7 +164,7 @@ struct ROBOMILL_API MonitorOptions {
   double min_speed_rad_per_s = 30.0 * units::rpm;
   int teeth = 0;                      ///< in [0, 64]; 0: unknown
   double window_s = 0.05;             ///< energy-entropy: of the transform; at least 32 samples and one hop
-  double hop_s = 0.025;               ///< between decisions; at least 16 samples
+  double hop_s = 0.025;               ///< between decisions; at least 4 samples, of energy-entropy 16
   int bands = 16;                     ///< equal, from 0 to half the sample rate; in [2, 64]
   Entropy entropy = Entropy::energy;  ///< energy-entropy
   /// energy-entropy: finite, required there; chatter where Decision::energy_entropy > threshold (alarm_below: <). It

@@ -21,10 +21,6 @@ double from_the_mains(double frequency_hz) noexcept {
   return nearest;
 }
 
-double energy_ratio(double value, double by) noexcept {
-  return value / (by + 1e-300);
-}
-
 }  // namespace
 
 // What every test that needs the orders asks for.

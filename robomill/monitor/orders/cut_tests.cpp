@@ -34,10 +34,6 @@ constexpr double reading = 0.05;  // 1/T: how well a line's frequency is read of
 constexpr Test order_of_tests[] = {Test::dominant, Test::ratio,   Test::growth,
                                    Test::family,   Test::runaway, Test::slow_ratio};
 
-double over(double value, double by) noexcept {
-  return value / (by + 1e-300);
-}
-
 }  // namespace
 
 CutTests::CutTests(const Setup& setup)
@@ -182,8 +178,8 @@ void CutTests::measure(std::uint64_t bad_channels) noexcept {
   } else {
     speed_.reset();
   }
-  const double energy = energy_of(usual.power, usual.like(), fast_.highest_hz()).whole;
-  cut_.step({.energy = energy,
+  energy_ = energy_of(usual.power, usual.like(), fast_.highest_hz()).whole;
+  cut_.step({.energy = energy_,
              .synchronous = found_far_.synchronous,
              .whole = found_far_.whole,
              .teeth = found_far_.teeth,
@@ -222,7 +218,7 @@ void CutTests::follow_growth() noexcept {
 void CutTests::follow_dominant() noexcept {
   const Window& usual = windows_[s_0_3];
   const double comb_hz = given_ ? 0.0 : search_.rotation_hz();
-  dominant_.step(usual.power, usual.like(), energy_of(usual.power, usual.like(), fast_.highest_hz()).whole,
+  dominant_.step(usual.power, usual.like(), energy_,
                  {.rotation_hz = given_ ? speed_.rotation_hz() : 0.0,
                   .teeth = setup_.teeth,
                   .off_ratio = speed_.belief() > forced_belief ? forced_off : forced_off_unsure,
@@ -244,7 +240,8 @@ void CutTests::follow_runaway() noexcept {
   const double line = sums_of(power.subspan(from, std::min(end, at + beside + 1) - from)).plain;
   const double whole = sums_of(power.subspan(first, end - first)).plain;
   rises_hz_ = like.peak_hz(at, near.power[at - 1], near.power[at], near.power[at + 1]);
-  rises_ = runaway_.step(rises_hz_, line * like.energy_share(), over(line, whole)) && !may_be_the_cut(rises_hz_);
+  rises_ =
+      runaway_.step(rises_hz_, line * like.energy_share(), energy_ratio(line, whole)) && !may_be_the_cut(rises_hz_);
 }
 
 // Of a slow spindle the orders are followed in sixteen turns, and the strongest line in eight.
@@ -324,8 +321,8 @@ CutTests::Sustained CutTests::sustained(Test test, std::uint64_t bad_channels) c
     whole += each;
     squares += each * each;
   }
-  return {over(last, most), over(std::min(last, before), most),
-          over(whole * whole, static_cast<double>(blocks) * squares)};
+  return {energy_ratio(last, most), energy_ratio(std::min(last, before), most),
+          energy_ratio(whole * whole, static_cast<double>(blocks) * squares)};
 }
 
 double CutTests::reading_hz(Test test) const noexcept {
@@ -467,7 +464,7 @@ CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t fra
     return why.conditions == 0 ? -1.0 : why.hops + static_cast<double>(why.held()) / why.conditions;
   });
   const Explanation& why = chatter_ ? why_[static_cast<std::size_t>(alarm_)] : *closest;
-  const double ratio = over(found_far_.family, found_far_.synchronous);
+  const double ratio = energy_ratio(found_far_.family, found_far_.synchronous);
   const double evidence = static_cast<double>(why.hops) / std::max(1, why.enough_hops);
   Verdict out{.chatter = chatter_,
               .score = chatter_ ? 1.0 + std::clamp(ratio, least_ratio, most_score) : std::min(1.0, evidence),

@@ -153,6 +153,7 @@ class CutTests {
   SpeedTracker slow_speed_;
   SlowLine slow_line_;
   bool slow_spindle_ = false;
+  double energy_ = 0.0;  // of all, in the last 0.3 s
   CutState cut_;
   DominantLine dominant_;
   GrowthTest growth_;

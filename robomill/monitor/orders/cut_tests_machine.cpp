@@ -39,7 +39,7 @@ void CutTests::ask_what_is_new() noexcept {
 CutTests::Shown CutTests::shown() const noexcept {
   const Window &fast = windows_[s_0_15], &slow = windows_[s_0_3];
   return {.seconds = fast_.past_s(),
-          .energy = energy_of(slow.power, slow.like(), fast_.highest_hz()).whole,
+          .energy = energy_,
           .rotation_hz = follows() ? speed_.rotation_hz() : 0.0,
           .fast = fast.power,
           .slow = slow.power,

@@ -63,6 +63,10 @@ struct WindowEnergy {
 };
 /// @param power  Σ |X|² over the channels, line by line;  @param like  a spectrum of one: T and Δν
 [[nodiscard]] WindowEnergy energy_of(std::span<const float> power, const Spectrum& like, double highest_hz) noexcept;
+/// Of two energies; that to nothing is huge.
+[[nodiscard]] inline double energy_ratio(double energy, double by) noexcept {
+  return energy / (by + 1e-300);
+}
 /// power(k f) of many f at once, between lines by straight lines.
 /// @param places  f/Δν, rising;  @param out  of those first places whose k f stands before the last line
 /// @return how many these are
