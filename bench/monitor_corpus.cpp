@@ -6,8 +6,10 @@
 // monitor_corpus --arms [first seed] [cuts a sensor]: the same of robot arms' cuts with slow spindles, by sensor,
 // sample rate and speed; and how many of the delays are within 8 turns of the spindle or half a second, whichever is
 // longer.
-// monitor_corpus --learnt [first seed] [cuts a class]: cuts with tones, a run-up, a microphone, and air, without and
-// with the machine that was learnt from three recordings in air of the same machine.
+// monitor_corpus --sensors [first seed] [cuts]: arms' cuts with three sensors at once: by their agreement, each alone,
+// and with the powers of all channels added. monitor_corpus --learnt [first seed] [cuts a class]: cuts with tones, a
+// run-up, a microphone, and air, without and with the machine that was learnt from three recordings in air of the same
+// machine.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -238,6 +240,44 @@ void arms(std::uint64_t first, std::uint64_t count) {
   print("RMS 5 sigma", five_sigma);
 }
 
+/// One of the sensors alone.
+RecordedCut alone(const RecordedCut& cut, int sensor) {
+  RecordedCut out = cut;
+  out.samples.clear();
+  out.sensors.clear();
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  for (std::size_t i = 0; i < cut.samples.size(); ++i) {
+    if (cut.sensors[i % channels] == sensor) out.samples.push_back(cut.samples[i]);
+  }
+  out.channels = static_cast<int>(std::ranges::count(cut.sensors, sensor));
+  return out;
+}
+
+void sensors(std::uint64_t first, std::uint64_t count) {
+  constexpr const char* names[] = {"spindle accelerometer", "wrist accelerometer", "force"};
+  Scores scores;
+  const auto judge = [&](const std::string& kind, const RecordedCut& cut, const monitor::MonitorOptions& options) {
+    scores[kind].push_back(score(cut, decisions_with(options, cut)));
+  };
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    const RecordedCut cut = arm_cut_of_three_sensors(seed);
+    monitor::MonitorOptions options = monitor_options(cut);
+    judge("agreement of more than half", cut, options);
+    options.agreeing_sensors = 1;
+    judge("any of them", cut, options);
+    options.agreeing_sensors = 3;
+    judge("all of them", cut, options);
+    options.sensors.clear();
+    options.agreeing_sensors = 0;
+    judge("powers added", cut, options);
+    for (int sensor = 0; sensor < 3; ++sensor) {
+      const RecordedCut one = alone(cut, sensor);
+      judge(fmt::format("{} alone", names[sensor]), one, monitor_options(one));
+    }
+  }
+  print("monitor, three sensors at once", scores);
+}
+
 /// Of the recordings those in which the monitor raises no alarm; null: of none.
 std::shared_ptr<const monitor::Machine> learnt_from(const std::vector<RecordedCut>& air, int& rejected) {
   std::vector<monitor::CalmRecording> calm;
@@ -287,7 +327,7 @@ void learnt(std::uint64_t first, std::uint64_t count) {
 
 int main(int argc, char** argv) {
   const std::string_view which = argc > 1 ? argv[1] : "";
-  const bool named = which == "--machines" || which == "--arms" || which == "--learnt";
+  const bool named = which == "--machines" || which == "--arms" || which == "--sensors" || which == "--learnt";
   const int at = named ? 2 : 1;
   const std::uint64_t first = argc > at ? std::strtoull(argv[at], nullptr, 10) : 1;
   const std::uint64_t all = named ? 20 : corpus_size;
@@ -296,6 +336,8 @@ int main(int argc, char** argv) {
     machines(first, count);
   } else if (which == "--arms") {
     arms(first, count);
+  } else if (which == "--sensors") {
+    sensors(first, count);
   } else if (which == "--learnt") {
     learnt(first, count);
   } else {

@@ -103,6 +103,24 @@ TEST(ArmCuts, ChatterIsInTheRecording) {
   EXPECT_GE(10 * clear, 9 * cuts) << clear << " of " << cuts;
 }
 
+// Three sensors of one cut: one truth, a tone of an axis in each of them, noise of their own.
+TEST(ArmCuts, ThreeSensorsShowOneCut) {
+  const RecordedCut one = arm_cut(ArmSensor::spindle_accelerometer, 1), all = arm_cut_of_three_sensors(1);
+  EXPECT_EQ(all.channels, 6);
+  EXPECT_EQ(all.sensors, (std::vector<int>{0, 0, 1, 1, 2, 2}));
+  EXPECT_EQ(all.samples.size(), 3 * one.samples.size());
+  EXPECT_EQ(all.truth.t10_s, one.truth.t10_s);
+  for (int sensor = 0; sensor < 3; ++sensor) {
+    RecordedCut alone = one;
+    alone.samples.clear();
+    for (std::size_t i = 0; i < all.samples.size(); i += 6) {
+      for (std::size_t c = 0; c < 2; ++c)
+        alone.samples.push_back(all.samples[i + 2 * static_cast<std::size_t>(sensor) + c]);
+    }
+    EXPECT_GT(contrast(alone, one.truth.displacement_hz, one.truth.t10_s, one.truth.end_s), 3.0) << sensor;
+  }
+}
+
 // By a second method: collocation of the linear delay equation, without runout.
 TEST(ArmCuts, LinearTheoryAgreesWithWhatIsPlanned) {
   int milled = 0;

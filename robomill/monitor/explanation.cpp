@@ -43,13 +43,14 @@ constexpr std::array quantity_table = {
     QuantityWords{Quantity::other_speed, "other_speed",
                   "evidence for a speed at which it is an order, beyond that for the tracked one"},
     QuantityWords{Quantity::line_holding, "line_holding", "its energy, to its most before"},
-    QuantityWords{Quantity::runaway_rise, "runaway_rise", "a line grows exponentially (1: it does)"}};
+    QuantityWords{Quantity::runaway_rise, "runaway_rise", "a line grows exponentially (1: it does)"},
+    QuantityWords{Quantity::agreement, "agreement", "agreement of the sensors, to what an alarm takes"}};
 
 consteval bool is_in_order() {
   for (std::size_t i = 0; i < quantity_table.size(); ++i) {
     if (static_cast<std::size_t>(quantity_table[i].quantity) != i) return false;
   }
-  return quantity_table.back().quantity == Quantity::runaway_rise;
+  return quantity_table.back().quantity == Quantity::agreement;
 }
 static_assert(is_in_order());
 
@@ -91,7 +92,8 @@ std::string condition_text(const Condition& condition) {
 
 std::string why_text(const Explanation& why, State state) {
   if (why.test == Test::none || why.conditions == 0) return {};
-  const std::string test = fmt::format("{} ({} of {} hops)", to_string(why.test), why.hops, why.enough_hops);
+  const std::string test = fmt::format("{} ({} of {} hops{})", to_string(why.test), why.hops, why.enough_hops,
+                                       why.sensor > 0 ? fmt::format(" of sensor {}", why.sensor) : "");
   const std::span<const Condition> conditions = conditions_of(why);
   if (state == State::chatter) {
     std::string out = fmt::format("chatter by {}: ", test);

@@ -52,7 +52,13 @@ struct Machine {
   std::vector<LearntRow> rows = {};    ///< by rotation, rising
   std::vector<LearntTone> tones = {};  ///< the loudest first
   LearntKnocks knocks = {};
+  std::vector<Machine> others = {};  ///< what further sensors show (MonitorOptions::sensors), each without others
 
+  [[nodiscard]] std::size_t sensors() const noexcept { return 1 + others.size(); }
+  /// From 0 on. @throws std::out_of_range
+  [[nodiscard]] const Machine& of_sensor(std::size_t sensor) const {
+    return sensor == 0 ? *this : others.at(sensor - 1);
+  }
   /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;
 };

@@ -15,6 +15,7 @@
 #include "robomill/monitor/order_detector.hpp"
 #include "robomill/monitor/orders/cut_tests.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
+#include "robomill/monitor/sensor_agreement.hpp"
 #include "robomill/monitor/signal_validation.hpp"
 
 namespace robomill::monitor {
@@ -65,6 +66,29 @@ void require_samples(const char* field, double seconds, double rate_hz, int leas
   }
 }
 
+/// Each from 0 on has a channel of vibration.
+void require_sensors(const MonitorOptions& options) {
+  constexpr int most = 8;
+  if (options.sensors.empty()) return;
+  if (options.sensors.size() != static_cast<std::size_t>(options.channels)) {
+    throw InvalidInput("sensors", static_cast<double>(options.sensors.size()), "", "must be one a channel");
+  }
+  const int count = options.sensor_count();
+  if (count > most) throw InvalidInput("sensors", count, "", fmt::format("must be {} at most", most));
+  for (int sensor = 0; sensor < count; ++sensor) {
+    bool has_one = false;
+    for (int c = 0; c < options.channels; ++c) {
+      const int of = options.sensors[static_cast<std::size_t>(c)];
+      if (of < 0) throw InvalidInput("sensors", of, "", "must count from 0 on");
+      has_one = has_one || (of == sensor && c != options.tachometer_channel);
+    }
+    if (!has_one) throw InvalidInput("sensors", sensor, "", "must have a channel of vibration each");
+  }
+  if (count > 1 && options.kind != Kind::comb_cusum) {
+    throw InvalidInput("sensors", count, "", "must be one with energy-entropy", "Its threshold holds for one sensor");
+  }
+}
+
 void require_same_signal(const Machine& machine, const MonitorOptions& options) {
   const char* const hint = "Learn the machine with this sensor: robomill monitor --learn";
   const double rate_hz = options.sample_rate_hz;
@@ -74,17 +98,30 @@ void require_same_signal(const Machine& machine, const MonitorOptions& options) 
         fmt::format("was learnt at {:.6g} Hz, and the samples come at {:.6g} Hz", machine.sample_rate_hz, rate_hz),
         hint);
   }
-  const int channels = options.channels - (options.tachometer_channel >= 0 ? 1 : 0);
-  if (machine.channels != channels) {
+  const auto sensors = static_cast<std::size_t>(options.sensor_count());
+  if (machine.sensors() != sensors) {
+    throw InvalidInput("machine",
+                       fmt::format("was learnt with {} sensors, and the samples have {}", machine.sensors(), sensors),
+                       hint);
+  }
+  for (std::size_t s = 0; s < sensors; ++s) {
+    int channels = 0;
+    for (int c = 0; c < options.channels; ++c) {
+      const bool of = options.sensors.empty() || options.sensors[static_cast<std::size_t>(c)] == static_cast<int>(s);
+      channels += c != options.tachometer_channel && of ? 1 : 0;
+    }
+    const int learnt = machine.of_sensor(s).channels;
+    if (learnt == channels) continue;
+    const std::string of = sensors > 1 ? fmt::format(" of sensor {}", s + 1) : "";
     throw InvalidInput(
         "machine",
-        fmt::format("was learnt with {} channels of vibration, and the samples have {}", machine.channels, channels),
-        hint);
+        fmt::format("was learnt with {} channels of vibration{}, and the samples have {}", learnt, of, channels), hint);
   }
 }
 
 std::unique_ptr<Detector> make_detector(const MonitorOptions& options) {
   if (options.kind == Kind::energy_entropy) return std::make_unique<EntropyDetector>(options);
+  if (options.sensor_count() > 1) return std::make_unique<SensorAgreement>(options);
   return std::make_unique<OrderDetector>(options);
 }
 
@@ -127,7 +164,18 @@ void MonitorOptions::validate() const {
   }
   require_positive("false_alarms_per_hour", false_alarms_per_hour, "1/h");
   require_non_negative("full_scale", full_scale, "");
+  require_sensors(*this);
+  require_between("agreeing_sensors", agreeing_sensors, 0.0, sensor_count(), "",
+                  "must be in [0, the number of sensors]");
   if (machine) require_same_signal(*machine, *this);
+}
+
+int MonitorOptions::sensor_count() const noexcept {
+  int last = 0;
+  for (std::size_t c = 0; c < sensors.size(); ++c) {
+    if (static_cast<int>(c) != tachometer_channel) last = std::max(last, sensors[c]);
+  }
+  return last + 1;
 }
 
 std::size_t MonitorOptions::hop_samples() const noexcept {
@@ -151,6 +199,7 @@ struct ChatterMonitor::Parts {
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
         left_out(channels),
+        loudest(static_cast<std::size_t>(o.sensor_count())),
         detector(make_detector(o)) {}
 
   void take(float sample) noexcept {
@@ -179,6 +228,10 @@ struct ChatterMonitor::Parts {
     return static_cast<int>(c) != options.tachometer_channel;
   }
 
+  [[nodiscard]] std::size_t sensor_of(std::size_t c) const noexcept {
+    return options.sensors.empty() ? 0 : static_cast<std::size_t>(options.sensors[c]);
+  }
+
   /// After a bad hop: until all that is looked back at is good.
   [[nodiscard]] std::size_t left_out_hops() const noexcept {
     return static_cast<std::size_t>(std::ceil(options.look_back_s() / options.hop_s - 1e-9)) - 1;
@@ -186,8 +239,7 @@ struct ChatterMonitor::Parts {
 
   /// Faults and level of the hop, which channels are bad, and whether what is left can be judged.
   void validate(Hop& hop) noexcept {
-    double power = 0.0;
-    double loudest = 0.0;
+    std::ranges::fill(loudest, 0.0);
     std::uint64_t at_limit = 0;
     for (std::size_t c = 0; c < channels; ++c) {
       const std::uint32_t faults = validations[c].hop_faults();
@@ -195,8 +247,8 @@ struct ChatterMonitor::Parts {
       last.faults |= is_vibration(c) ? faults : faults & not_finite;
       if (!is_vibration(c)) continue;
       if ((faults & clipped) != 0) at_limit |= std::uint64_t{1} << c;
-      power += validations[c].variance();
-      loudest = std::max(loudest, validations[c].variance());
+      double& of_sensor = loudest[sensor_of(c)];
+      of_sensor = std::max(of_sensor, validations[c].variance());
     }
     std::size_t vibration = 0;
     std::size_t bad = 0;
@@ -205,7 +257,7 @@ struct ChatterMonitor::Parts {
     for (std::size_t c = 0; c < channels; ++c) {
       if (!is_vibration(c)) continue;
       ++vibration;
-      const bool silent = validations[c].variance() < silence * loudest;
+      const bool silent = validations[c].variance() < silence * loudest[sensor_of(c)];
       if (silent) last.faults |= dead_channel;
       const bool is_bad = silent || validations[c].bad();
       if (is_bad) ++bad;
@@ -217,7 +269,7 @@ struct ChatterMonitor::Parts {
         if ((at_limit >> c & 1U) != 0) ++usable_at_limit;
       }
     }
-    last.level = std::sqrt(power / static_cast<double>(vibration));
+    last.level = level(hop.bad_channels);
     clipped_run = usable > 0 && usable == usable_at_limit ? clipped_run + 1 : 0;
     const bool is_gap = 2 * std::exchange(lost_frames, 0) > hop_frames;
     if (bad == vibration) {
@@ -227,6 +279,23 @@ struct ChatterMonitor::Parts {
     } else if (unusable != BlindReason::gap) {
       unusable = BlindReason::no_signal;
     }
+  }
+
+  /// Rms over the first sensor with a channel that can be used; without one, over the first.
+  [[nodiscard]] double level(std::uint64_t bad_channels) const noexcept {
+    std::size_t shown = loudest.size();
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (is_vibration(c) && (bad_channels >> c & 1U) == 0) shown = std::min(shown, sensor_of(c));
+    }
+    if (shown == loudest.size()) shown = 0;
+    double power = 0.0;
+    int count = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (!is_vibration(c) || sensor_of(c) != shown) continue;
+      power += validations[c].variance();
+      ++count;
+    }
+    return std::sqrt(power / count);
   }
 
   /// What is wrong with the input stands before what the detector lacks; an alarm stands until the detector ends it.
@@ -246,6 +315,7 @@ struct ChatterMonitor::Parts {
   std::size_t frame = 0, channel = 0;
   std::vector<SignalValidation> validations;
   std::vector<std::size_t> left_out;  // hops for which each channel is still left out
+  std::vector<double> loudest;        // variance, of each sensor's channels
   std::size_t clipped_run = 0;        // hops in which every usable channel was at its limit
   std::size_t lost_frames = 0;        // of this hop, NaN in every channel
   bool frame_is_lost = true;          // so far

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
@@ -105,6 +106,7 @@ enum class Quantity : std::uint8_t {
   other_speed,     ///< evidence for a speed at which the line is an order, beyond that for the tracked one
   line_holding,    ///< of that line, to its most of half a window: what rings falls
   runaway_rise,    ///< 1 while a line grows exponentially by 20/s or more
+  agreement,       ///< votes of several sensors, to those an alarm takes
 };
 /// One of what a test asks for.
 struct Condition {
@@ -116,11 +118,12 @@ struct Condition {
 /// Why a decision is what it is: of the test that holds the alarm, or came closest to one, all conditions.
 struct Explanation {
   Test test = Test::none;
+  int sensor = 0;  ///< that it is about, of several: from 1, in the order of MonitorOptions::sensors; 0: one
   int hops = 0, enough_hops = 0;  ///< of the last 8 (growth: in a row) in which it held, of those an alarm takes
   float speed_belief =
       0.0F;  ///< in the tracked speed, 0 to 1; below 0.12 only `dominant`, `slow_ratio` and `runaway` are armed
   int conditions = 0;
-  std::array<Condition, 14> condition = {};
+  std::array<Condition, 15> condition = {};
   void ask(Quantity quantity, double value, double threshold, bool at_most = false) noexcept {
     if (conditions < static_cast<int>(condition.size())) {
       constexpr double most = std::numeric_limits<float>::max();  // a ratio to nothing is infinite
@@ -154,9 +157,15 @@ inline constexpr double slowest_min_speed_rad_per_s = 1.0 * units::rpm;
 
 struct ROBOMILL_API MonitorOptions {
   Kind kind = Kind::comb_cusum;
-  double sample_rate_hz = 0.0;           ///< in [100, 1e6]; required
-  int channels = 1;                      ///< in [1, 64]; interleaved, in the order of the files
-  int tachometer_channel = -1;           ///< of these, from 0: pulses, which are no vibration; -1: none
+  double sample_rate_hz = 0.0;  ///< in [100, 1e6]; required
+  int channels = 1;             ///< in [1, 64]; interleaved, in the order of the files
+  int tachometer_channel = -1;  ///< of these, from 0: pulses, which are no vibration; -1: none
+  /// comb-cusum: of each channel its sensor, from 0 on, 8 at most; the tachometer's is not used. The powers of a
+  /// sensor's channels are added; sensors are judged apart and an alarm takes their agreement (README.md). Empty: one
+  /// sensor.
+  std::vector<int> sensors = {};
+  int agreeing_sensors =
+      0;  ///< that must detect chatter at one line, >= 0; 0: more than half of those that see the cut
   int pulses_per_revolution = 1;         ///< of the tachometer or encoder; in [1, 10000]
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
   double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
@@ -180,6 +189,7 @@ struct ROBOMILL_API MonitorOptions {
   std::shared_ptr<const Machine> machine = {};
   /// @throws InvalidInput naming the field
   void validate() const;
+  [[nodiscard]] int sensor_count() const noexcept;
   /// Samples a hop and a window: the times, rounded.
   [[nodiscard]] std::size_t hop_samples() const noexcept;
   [[nodiscard]] std::size_t window_samples() const noexcept;
@@ -198,9 +208,9 @@ struct Decision {
   double score = 0.0;                      ///< of the test
   double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <); comb-cusum: 1
   /// Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it; comb-cusum: of the last 0.15
-  /// s.
+  /// s. Of several sensors, this, level and band_level are those of the first one that can be used.
   double energy_entropy = 0.0;
-  double level = 0.0;                 ///< rms of all channels of vibration over the hop, mean taken off [input's unit]
+  double level = 0.0;                 ///< rms of the channels of vibration over the hop, mean taken off [input's unit]
   double chatter_frequency_hz = 0.0;  ///< 0: none
   double chatter_frequency_std_hz = 0.0;     ///< its standard deviation
   int channel = 0;                           ///< in which chatter is strongest, from 0

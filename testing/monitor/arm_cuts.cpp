@@ -85,12 +85,38 @@ ArmCut draw_arm_cut(ArmSensor sensor, std::uint64_t seed) {
     r.channels = static_cast<int>(sensing.sampled.mix.rows());
     r.samples = sensed(out.seen.acceleration_m_per_s2, sensing.sampled);
     r.truth = at_rate(r.truth, r.sample_rate_hz);
-    disturb_arm_cut(out, sensing, arm_noises.at(static_cast<std::size_t>(r.noise)), random, r.samples);
+    disturb_arm_cut(out, sensing, arm_noises.at(static_cast<std::size_t>(r.noise)), random, random, r.samples);
     const double off = random.uniform() < 0.2 ? 0.0 : random.uniform(-0.05, 0.05);
     r.hint_rad_per_s = out.arm.speed_rad_per_s * (1.0 + off);
     return out;
   }
   throw InvalidInput("seed", static_cast<double>(seed), "", "gave no cut of an arm that does as planned");
+}
+
+RecordedCut arm_cut_of_three_sensors(std::uint64_t seed) {
+  ArmCut cut = draw_arm_cut(ArmSensor::spindle_accelerometer, seed);
+  RecordedCut out = cut.recorded;
+  const CleanCut clean = simulate(cut.arm.plan);
+  const std::size_t frames = out.samples.size() / static_cast<std::size_t>(out.channels);
+  std::vector<std::vector<float>> shown;
+  Random random(seed, 5000);
+  for (const ArmSensor sensor : {ArmSensor::spindle_accelerometer, ArmSensor::wrist_accelerometer, ArmSensor::force}) {
+    ArmSensing sensing = draw_sensing(sensor, seed / 6, random);
+    sensing.sampled.sample_rate_hz = out.sample_rate_hz;
+    cut.seen = seen_by(sensing, clean);
+    cut.level = forced_level(without_load(cut.seen));
+    Random events(seed, 5001);
+    shown.push_back(sensed(cut.seen.acceleration_m_per_s2, sensing.sampled));
+    disturb_arm_cut(cut, sensing, arm_noises.at(static_cast<std::size_t>(out.noise)), random, events, shown.back());
+  }
+  out.kind = "three sensors";
+  out.channels = 6;
+  out.sensors = {0, 0, 1, 1, 2, 2};
+  out.samples.clear();
+  for (std::size_t i = 0; i < frames; ++i) {
+    for (const std::vector<float>& one : shown) out.samples.insert(out.samples.end(), {one[2 * i], one[2 * i + 1]});
+  }
+  return out;
 }
 
 RecordedCut arm_cut(ArmSensor sensor, std::uint64_t seed) {

@@ -28,6 +28,11 @@ inline constexpr Name<ArmSensor> arm_sensor_names[] = {{"spindle-accelerometer",
 /// without what is slower than 3 Hz: the load. kind: the sensor's name.
 [[nodiscard]] RecordedCut arm_cut(ArmSensor sensor, std::uint64_t seed);
 
+/// The cut of the spindle accelerometer's seed as it, a wrist accelerometer and a force sensor show it at once, at
+/// 5,120 Hz, two channels each. Each has noise of its own; tones, hum and knocks are those of one arm. Truth is the
+/// spindle accelerometer's.
+[[nodiscard]] RecordedCut arm_cut_of_three_sensors(std::uint64_t seed);
+
 /// A cut, and what stands before the sensor.
 struct ArmCut {
   RecordedCut recorded;

@@ -226,7 +226,7 @@ CleanCut seen_by(const ArmSensing& sensing, const CleanCut& clean) {
   return out;
 }
 
-void disturb_arm_cut(const ArmCut& cut, const ArmSensing& sensing, double noise, Random& random,
+void disturb_arm_cut(const ArmCut& cut, const ArmSensing& sensing, double noise, Random& random, Random& events,
                      std::vector<float>& samples) {
   const ArmFrames frames = {.cut = cut,
                             .rate_hz = sensing.sampled.sample_rate_hz,
@@ -234,10 +234,10 @@ void disturb_arm_cut(const ArmCut& cut, const ArmSensing& sensing, double noise,
                             .samples = samples};
   const double level = cut.level, turning = sensing.of_drives() ? 0.2 : 1.0;
   add_arm_noise(frames, noise * level, random);
-  add_unbalance_and_hum(frames, turning * level * random.uniform(0.01, 0.1), level * random.uniform(0.005, 0.03),
-                        random);
-  add_tones(tones_of_drives(frames, random), frames.rate_hz, static_cast<int>(frames.channels), random, samples);
-  add_arm_knocks(frames, random.uniform(0.05, 0.4), sensing.of_drives() ? 3.0 : 8.0, random);
+  add_unbalance_and_hum(frames, turning * level * events.uniform(0.01, 0.1), level * events.uniform(0.005, 0.03),
+                        events);
+  add_tones(tones_of_drives(frames, events), frames.rate_hz, static_cast<int>(frames.channels), events, samples);
+  add_arm_knocks(frames, events.uniform(0.05, 0.4), sensing.of_drives() ? 3.0 : 8.0, events);
   if (sensing.of_drives()) add_drive_trace(frames, random);
 }
 

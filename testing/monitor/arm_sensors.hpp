@@ -45,8 +45,9 @@ struct ArmSensing {
 
 /// All that a recording has beside the cut, added to its samples.
 /// @param level  of ArmCut
-/// @param noise  as a share of it
-void disturb_arm_cut(const ArmCut& cut, const ArmSensing& sensing, double noise, Random& random,
+/// @param noise   as a share of it
+/// @param events  draws what several sensors show at once: tones, hum, knocks; may be `random`
+void disturb_arm_cut(const ArmCut& cut, const ArmSensing& sensing, double noise, Random& random, Random& events,
                      std::vector<float>& samples);
 
 }  // namespace robomill::monitor::testing

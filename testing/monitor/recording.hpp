@@ -52,6 +52,7 @@ struct RecordedCut {
   int noise = 0;            ///< 0, 1, 2
   double sample_rate_hz = corpus_rate_hz;
   int channels = 2;                 ///< x, y
+  std::vector<int> sensors = {};    ///< of each channel its sensor, from 0; empty: one
   std::vector<float> samples = {};  ///< interleaved [m/s²]
   int tachometer_channel = -1;      ///< of these, from 0: pulses of 0 or 5 V; -1: none
   int pulses_per_revolution = 1;    ///< of it

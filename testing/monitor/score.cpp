@@ -158,6 +158,7 @@ MonitorOptions monitor_options(const RecordedCut& cut) {
   MonitorOptions options;
   options.sample_rate_hz = cut.sample_rate_hz;
   options.channels = cut.channels;
+  options.sensors = cut.sensors;
   options.tachometer_channel = cut.tachometer_channel;
   options.pulses_per_revolution = cut.pulses_per_revolution;
   options.spindle_speed_rad_per_s = cut.hint_rad_per_s;

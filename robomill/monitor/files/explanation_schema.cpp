@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,21 +64,25 @@ const Schema<Condition>& condition_table() {
 
 const Schema<Explanation>& explanation_table() {
   using Why = Explanation;
-  static const Schema<Why> table("explanation", "why a decision is what it is",
-                                 {key("test", &Why::test, test_names, "that holds the alarm, or came closest to one"),
-                                  key("hops", &Why::hops, "in which it held, of the last 8; of `growth` in a row"),
-                                  key("of", &Why::enough_hops, "hops that an alarm takes"),
-                                  key(
-                                      "speed_belief", [](const Why& why) { return short_number(why.speed_belief); },
-                                      "in the tracked speed, 0 to 1"),
-                                  key(
-                                      "conditions",
-                                      [](const Why& why) {
-                                        return std::vector<Condition>(why.condition.begin(),
-                                                                      why.condition.begin() + why.conditions);
-                                      },
-                                      condition_table(), "all that the test asks for")},
-                                 io::Use::written);
+  static const Schema<Why> table(
+      "explanation", "why a decision is what it is",
+      {key("test", &Why::test, test_names, "that holds the alarm, or came closest to one"),
+       key(
+           "sensor", [](const Why& why) { return why.sensor > 0 ? std::optional(why.sensor) : std::nullopt; },
+           "that it is about, from 1, in the order of signal.sensors; none: there is one")
+           .nullable(),
+       key("hops", &Why::hops, "in which it held, of the last 8; of `growth` in a row"),
+       key("of", &Why::enough_hops, "hops that an alarm takes"),
+       key(
+           "speed_belief", [](const Why& why) { return short_number(why.speed_belief); },
+           "in the tracked speed, 0 to 1"),
+       key(
+           "conditions",
+           [](const Why& why) {
+             return std::vector<Condition>(why.condition.begin(), why.condition.begin() + why.conditions);
+           },
+           condition_table(), "all that the test asks for")},
+      io::Use::written);
   return table;
 }
 

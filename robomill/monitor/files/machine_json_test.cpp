@@ -33,6 +33,31 @@ TEST(MachineJson, ComesBack) {
   EXPECT_EQ(back.channels, 2);
 }
 
+TEST(MachineJson, HasOneMapASensor) {
+  const test::Folder folder;
+  Machine machine = some_machine();
+  machine.others = {some_machine()};
+  machine.others.front().channels = 1;
+  machine.others.front().tones.clear();
+  const std::string text = machine_json(machine);
+  folder.file("machine.json", text);
+  const Machine back = read_machine(folder.at("machine.json"));
+  EXPECT_EQ(machine_json(back), text);
+  EXPECT_EQ(back.of_sensor(1).channels, 1);
+  EXPECT_NE(machine_text(back).find("sensor 2: "), std::string::npos);
+  // Those of one sensor were written without it.
+  io::Json one = io::parsed(machine_json(some_machine()));
+  one.erase("others");
+  folder.file("one.json", io::plain_text(one));
+  EXPECT_EQ(read_machine(folder.at("one.json")).sensors(), 1U);
+  machine.others.front().others = {some_machine()};
+  EXPECT_EQ(test::field_of([&] { machine.validate(); }), "others[1].others");
+  machine.others.front().others.clear();
+  machine.others.front().rows.front().hops = 0;
+  machine.others.front().rows.front().beside.clear();
+  EXPECT_EQ(test::field_of([&] { machine.validate(); }), "others[1].rows[1].beside");
+}
+
 TEST(MachineJson, SaysWhatIsWrong) {
   const test::Folder folder;
   const auto error_of = [&](auto change) {

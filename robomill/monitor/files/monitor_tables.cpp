@@ -141,6 +141,10 @@ const Schema<MonitorFile>& signal_table() {
        key("anti_alias_filter", &MonitorFile::anti_alias_filter,
            "whether a filter ahead of the converter removes frequencies above half the sample rate; false: not stated"),
        channels_key(), tachometer_key(),
+       key("sensors", &MonitorFile::sensors,
+           "the sensor of each channel, by name: powers of a sensor's channels are added, sensors are judged apart, "
+           "and "
+           "an alarm takes their agreement. Without it channels whose names state unlike units are unlike sensors"),
        of(&MonitorFile::options, key("pulses_per_revolution", &MonitorOptions::pulses_per_revolution,
                                      "of the tachometer. The pulse rate must be below half the sample rate")
                                      .at_least(1.0)
@@ -207,7 +211,10 @@ const Schema<MonitorOptions>& detector_table() {
            "fewer, 3 to 8")
            .as("false_alarms_per_hour")
            .in_unit()
-           .above(0.0)});
+           .above(0.0),
+       key("agreeing_sensors", &MonitorOptions::agreeing_sensors,
+           "of several sensors: as many must detect chatter at one line; 0: more than half of those that see the cut")
+           .at_least(0.0)});
   return table;
 }
 

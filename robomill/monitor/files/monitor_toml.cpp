@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/si.hpp"
 #include "robomill/io/system/append.hpp"
 #include "robomill/io/toml/edit.hpp"
 #include "robomill/io/toml/samples.hpp"
@@ -41,6 +43,46 @@ void read_act(io::TomlFile& file, ActSettings& act) {
   }
 }
 
+/// By the names given, else by the units that the channels' names state.
+void number_sensors(const io::TomlFile& file, MonitorFile& out) {
+  const std::vector<std::string>& channels = out.columns.channels;
+  std::vector<std::string> names = out.sensors;
+  const auto tachometer = static_cast<std::size_t>(out.options.tachometer_channel);
+  const std::size_t vibration = channels.size() - (tachometer < channels.size() ? 1 : 0);
+  if (file.has("signal.sensors") && names.size() != vibration) {
+    throw file.reject("signal.sensors", fmt::format("must name one sensor a channel: {}", vibration));
+  }
+  if (names.empty()) {
+    if (out.options.kind != Kind::comb_cusum) return;
+    for (std::size_t c = 0; c < vibration; ++c) names.push_back(io::unit_of_column(channels[c]));
+  }
+  std::vector<std::string> unlike;
+  out.options.sensors.clear();
+  for (const std::string& name : names) {
+    const auto at = std::ranges::find(unlike, name) - unlike.begin();
+    if (at == std::ssize(unlike)) unlike.push_back(name);
+    out.options.sensors.push_back(static_cast<int>(at));
+  }
+  if (unlike.size() < 2) {
+    out.options.sensors.clear();
+    return;
+  }
+  out.options.sensors.resize(channels.size());  // the tachometer is the last one
+}
+
+/// Of sensors that nobody named.
+std::vector<std::string> notes_on_sensors(const MonitorFile& file) {
+  if (!file.sensors.empty() || file.options.sensors.empty()) return {};
+  std::string list;
+  for (std::size_t c = 0; c < file.columns.channels.size(); ++c) {
+    if (static_cast<int>(c) == file.options.tachometer_channel) continue;
+    io::append(list, "{}{} (sensor {})", list.empty() ? "" : ", ", file.columns.channels[c],
+               file.options.sensors[c] + 1);
+  }
+  return {"channels of unlike units are judged as sensors apart, and an alarm takes their agreement: " + list +
+          ". signal.sensors says otherwise"};
+}
+
 std::string toml_value(const io::Json& value) {
   if (value.is_string()) return io::toml_quoted(value.get_ref<const std::string&>());
   if (!value.is_array())
@@ -70,6 +112,7 @@ void read_detection(io::TomlFile& file, MonitorFile& out) {
   file.locate([&] { out.columns.validate(); });
   process_table().read(file, "process", out);
   detector_table().read(file, "detector", out.options);
+  number_sensors(file, out);
 }
 
 void check_options(const io::TomlFile& file, const MonitorFile& monitor) {
@@ -99,6 +142,7 @@ MonitorFile read_monitor(const io::TomlSource& source) {
   metrics_table().read(file, "metrics", out);
   recording_table().read(file, "recording", out);
   out.notes = file.done();
+  std::ranges::copy(notes_on_sensors(out), std::back_inserter(out.notes));
   out.assumed = io::sample_values(file);
   check_options(file, out);
   return out;

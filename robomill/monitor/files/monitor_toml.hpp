@@ -61,6 +61,9 @@ struct MonitorFile {
   std::filesystem::path path = {};
   /// [signal], without the rate; the tachometer is the last channel. The spindle speed is followed.
   io::SampleColumns columns = {.channels = {}, .followed = "spindle_speed_rpm", .followed_factor = units::rpm};
+  /// signal.sensors: of each channel but the tachometer the name of its sensor; empty: those of unlike units are judged
+  /// apart. MonitorOptions::sensors numbers them as they come.
+  std::vector<std::string> sensors = {};
   MonitorOptions options = {};  ///< sample_rate_hz is 0 where the file leaves it to the recording
   /// Whether nothing above half the sample rate was sampled; false: not stated, and lines may be folded.
   bool anti_alias_filter = false;

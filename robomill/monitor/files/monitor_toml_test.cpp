@@ -14,6 +14,28 @@ namespace monitor_toml_test {
 
 constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n";
 
+TEST(MonitorToml, NumbersSensorsAsTheyCome) {
+  const test::Folder folder;
+  const auto read = [&](const std::string& signal) {
+    return read_monitor(folder.file("m.toml", "[signal]\nsample_rate_hz = 1000\n" + signal));
+  };
+  const MonitorFile named = read(
+      "channels = [\"i1_a\", \"ax\", \"i2_a\"]\nsensors = [\"drives\", \"spindle\", \"drives\"]\n"
+      "tachometer = \"pulse\"\n[detector]\nagreeing_sensors = 2\n");
+  EXPECT_EQ(named.options.sensors, (std::vector<int>{0, 1, 0, 0}));
+  EXPECT_EQ(named.options.agreeing_sensors, 2);
+  EXPECT_TRUE(named.notes.empty());
+  EXPECT_EQ(read_monitor(folder.file("again.toml", monitor_toml(named))).options.sensors, named.options.sensors);
+  const MonitorFile units = read("channels = [\"ax_m_per_s2\", \"ay_m_per_s2\", \"i1 [A]\"]\n");
+  EXPECT_EQ(units.options.sensors, (std::vector<int>{0, 0, 1}));
+  ASSERT_EQ(units.notes.size(), 1U);
+  EXPECT_NE(units.notes.front().find("i1 [A] (sensor 2)"), std::string::npos) << units.notes.front();
+  EXPECT_TRUE(read("channels = [\"ax_m_per_s2\", \"ay_m_per_s2\"]\n").options.sensors.empty());
+  EXPECT_TRUE(read("channels = [1, 2]\nsensors = [\"a\", \"a\"]\n").options.sensors.empty());
+  const std::string error = test::rejection([&] { (void)read("channels = [1, 2]\nsensors = [\"a\"]\n"); });
+  EXPECT_NE(error.find("m.toml:4: signal.sensors"), std::string::npos) << error;
+}
+
 TEST(MonitorToml, ReadsEveryKey) {
   const test::Folder folder;
   const MonitorFile file = read_monitor(folder.file(

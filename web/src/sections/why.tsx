@@ -17,10 +17,11 @@ function thresholdOf(condition: Condition): string {
   return most === undefined ? `at least ${shownValue(least ?? null, condition)}` : `at most ${shownValue(most, condition)}`;
 }
 
-/** "by ratio, 6 of 6 hops"; of no alarm the test that came closest, with how much of it holds. */
-export function whyText({ test, hops, of, conditions }: MonitorWhy, alarm: boolean): string {
+/** "by ratio, 6 of 6 hops", "by ratio, 6 of 6 hops of sensor 2"; of no alarm the test that came closest, with how much of it holds. */
+export function whyText({ test, sensor, hops, of, conditions }: MonitorWhy, alarm: boolean): string {
   const held = conditions.filter(({ holds }) => holds).length;
-  return alarm ? `by ${test}, ${hops} of ${of} hops` : `closest: ${test}, ${hops} of ${of} hops, ${held} of ${conditions.length} conditions hold`;
+  const counted = `${test}, ${hops} of ${of} hops${sensor === null ? '' : ` of sensor ${sensor}`}`;
+  return alarm ? `by ${counted}` : `closest: ${counted}, ${held} of ${conditions.length} conditions hold`;
 }
 
 /** Opens on a click. `alarm`: it explains one, else silence. */

@@ -89,6 +89,7 @@ const summary: MonitorSummary = {
 };
 const why: MonitorWhy = {
   test: 'ratio',
+  sensor: null,
   hops: 6,
   of: 6,
   speed_belief: 0.41,
