@@ -98,6 +98,7 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
     if (std::ranges::find(basis.warnings, warning) == basis.warnings.end())
       basis.warnings.push_back(std::move(warning));
   }
+  std::ranges::move(notes, std::back_inserter(basis.notes));
   if (basis.modes && basis.teeth == 0) {
     throw InvalidInput(InvalidInput::Parts{.where = file.path.string(),
                                            .field = "process.teeth",

@@ -115,7 +115,8 @@ struct Condition {
   float value = 0.0F, threshold = 0.0F;
   [[nodiscard]] bool holds() const noexcept { return at_most ? value <= threshold : value >= threshold; }
 };
-/// Why a decision is what it is: of the test that holds the alarm, or came closest to one, all conditions.
+/// Why a decision is what it is: of the test that holds the alarm, or came closest to one, all conditions. An alarm
+/// begins where they hold; it is held by less (README.md, "Tests").
 struct Explanation {
   Test test = Test::none;
   int sensor = 0;  ///< that it is about, of several: from 1, in the order of MonitorOptions::sensors; 0: one

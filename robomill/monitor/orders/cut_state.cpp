@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "robomill/monitor/orders/hops.hpp"
+#include "robomill/monitor/orders/thresholds.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 constexpr double leaving_s = 0.4, swing_s = 0.3, speed_s = 0.3, entry_s = 0.4;
 constexpr double quiet_memory_s = 10.0;
 constexpr double above_air = 4.0;     // of the quietest energy: the tool cuts
-constexpr double explained = 0.35;    // of all energy in the multiples of rotation: it cuts, too
 constexpr double enters_by = 4.0;     // growth of the energy within swing_s …
 constexpr double of_entry = 0.5;      // of that growth, at tooth passing
 constexpr double least_anchor = 0.2;  // of all energy, in the multiples of rotation
@@ -77,7 +77,7 @@ double CutState::anchored() const noexcept {
   const double of_whole = synchronous_share() / least_anchor;
   const double of_lines = now_.comb / least_comb;
   if (usual_synchronous_ <= 0.0) return std::max(of_whole, of_lines);
-  const bool both = now_.synchronous + now_.family >= explained * now_.whole || of_lines >= 1.0;
+  const bool both = now_.synchronous + now_.family >= thresholds::explains * now_.whole || of_lines >= 1.0;
   return both ? std::max(of_whole, now_.synchronous / (keeps * usual_synchronous_)) : of_whole;
 }
 
@@ -90,7 +90,7 @@ double CutState::synchronous_share() const noexcept {
 }
 
 double CutState::cutting() const noexcept {
-  return std::max(above_quiet() / above_air, synchronous_share() / explained);
+  return std::max(above_quiet() / above_air, synchronous_share() / thresholds::explains);
 }
 
 double CutState::staying() const noexcept {

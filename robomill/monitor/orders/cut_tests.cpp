@@ -463,7 +463,7 @@ CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t fra
   const auto closest = std::ranges::max_element(why_, {}, [](const Explanation& why) {
     return why.conditions == 0 ? -1.0 : why.hops + static_cast<double>(why.held()) / why.conditions;
   });
-  const Explanation& why = chatter_ ? why_[static_cast<std::size_t>(alarm_)] : *closest;
+  const Explanation& why = chatter_ ? why_[static_cast<std::size_t>(read_by_)] : *closest;
   const double ratio = energy_ratio(found_far_.family, found_far_.synchronous);
   const double evidence = static_cast<double>(why.hops) / std::max(1, why.enough_hops);
   Verdict out{.chatter = chatter_,

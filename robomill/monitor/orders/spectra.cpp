@@ -52,12 +52,6 @@ void interpolate(const float* power, const float* places, float order, float* ou
 
 }  // namespace
 
-double hann_kernel(double u) noexcept {
-  if (std::abs(u) < 1e-8) return 1.0;
-  if (std::abs(std::abs(u) - 1.0) < 1e-8) return 0.5;
-  return std::sin(pi * u) / (pi * u * (1.0 - u * u));
-}
-
 Sums sums_of(std::span<const float> x) noexcept {
   std::array<double, lanes> plain = {};
   std::array<double, lanes> squares = {};

@@ -10,10 +10,6 @@
 
 namespace robomill::monitor {
 
-/// What a sine of amplitude 1 shows at a distance u = (ν - ν₀) T under the Hann window of length T:
-///   h(u) = sin(πu)/(πu (1 - u²)),   h(0) = 1, h(±1) = 1/2, ∫ h² du = 3/2.   [Harris1978]
-[[nodiscard]] double hann_kernel(double u) noexcept;
-
 /// As near as this [1/T] a line cannot be distinguished from an order.
 inline constexpr double on_an_order = 0.75;
 
@@ -21,8 +17,9 @@ inline constexpr double on_an_order = 0.75;
 /// costs does not follow the speed.
 inline constexpr double lowest_rotation_hz = 4.0;
 
-/// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of
-/// amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the middle.
+/// One spectrum under a Hann window [Harris1978]: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle.
+/// A sine of amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the
+/// middle.
 struct Spectrum {
   double seconds = 0.0;  ///< T
   double step_hz = 0.0;  ///< between lines, at most 1/(2T)

@@ -27,6 +27,14 @@ using monitor::testing::usual_windows_s;
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double rate_hz = 10240.0;
 
+/// What a sine of amplitude 1 shows at a distance u = (ν - ν₀) T under the Hann window of length T:
+///   h(u) = sin(πu)/(πu (1 - u²)),   h(0) = 1, h(±1) = 1/2, ∫ h² du = 3/2.   [Harris1978]
+double hann_kernel(double u) {
+  if (std::abs(u) < 1e-8) return 1.0;
+  if (std::abs(std::abs(u) - 1.0) < 1e-8) return 0.5;
+  return std::sin(std::numbers::pi * u) / (std::numbers::pi * u * (1.0 - u * u));
+}
+
 double energy_of(const Spectrum& spectrum) {
   double sum = 0.0;
   for (const auto& x : spectrum.line) sum += static_cast<double>(std::norm(x));

@@ -14,7 +14,7 @@ inline constexpr double leaves = 0.3;       // of the most energy of 0.4 s: less
 inline constexpr double settled_s = 0.2;    // after an entry
 inline constexpr double still_order = 0.8;  // widths of a line, by which the order beside it may move in 0.3 s
 inline constexpr double most_of_another_speed = 0.1;  // of the mean of log₁₀(P'/P)/2: 2 dB
-inline constexpr double explains = 0.35;              // of all energy
+inline constexpr double explains = 0.35;              // of all energy, in the orders: the tool cuts
 inline constexpr double quiet_is_known = 4.0;         // of the quietest energy: something louder than it has been
 
 // A calm is known, too, where a cut has had so little beside its orders, to these, for so long.
