@@ -39,10 +39,10 @@ constexpr std::array quantity_table = {
     QuantityWords{Quantity::line_spread, "line_spread", "how evenly its energy is spread over the window"},
     QuantityWords{Quantity::line_new, "line_new", "that line above what the machine shows without chatter",
                   Scale::decibels},
-    QuantityWords{Quantity::line_lasting, "line_lasting", "share of the time for which the line was as strong"},
+    QuantityWords{Quantity::line_lasting, "line_lasting", "part of the last 0.4 s in which all of that was so"},
     QuantityWords{Quantity::other_speed, "other_speed",
                   "evidence for a speed at which it is an order, beyond that for the tracked one"},
-    QuantityWords{Quantity::line_holding, "line_holding", "its energy, to its most before"},
+    QuantityWords{Quantity::line_holding, "line_holding", "what does not repeat, second half of its window to the first"},
     QuantityWords{Quantity::runaway_rise, "runaway_rise", "a line grows exponentially (1: it does)"},
     QuantityWords{Quantity::agreement, "agreement", "agreement of the sensors, to what an alarm takes"}};
 

@@ -72,7 +72,7 @@ enum class Test : std::uint8_t {
   family,     ///< several lines at one fraction of an order have grown: mild chatter
   growth,     ///< a line that is no multiple of tooth passing has grown, wherever it moves
   runaway,    ///< a line grows exponentially
-  slow_ratio  ///< a low line beside the orders of a slow spindle is as strong as they are, and lasts: arms
+  slow_ratio  ///< much of a slow spindle's vibration does not repeat from turn to turn, has come and lasts: arms
 };
 inline constexpr Name<Test> test_names[] = {
     {"none", Test::none},     {"dominant", Test::dominant}, {"ratio", Test::ratio},          {"family", Test::family},
@@ -102,9 +102,9 @@ enum class Quantity : std::uint8_t {
   line_kept_up,    ///< the same of the last turn and of the one before, the less of both
   line_spread,     ///< of that energy over the window, 1: even; knocks are not
   line_new,        ///< of the line, to what the machine shows there without chatter
-  line_lasting,    ///< of the hops in 0.6 windows, those in which a slow spindle's line was as strong
+  line_lasting,    ///< slow_ratio: of the last 0.4 s, the part in which all that it asks was so
   other_speed,     ///< evidence for a speed at which the line is an order, beyond that for the tracked one
-  line_holding,    ///< of that line, to its most of half a window: what rings falls
+  line_holding,    ///< slow_ratio: what does not repeat, second half of its window to the first: what rings falls
   runaway_rise,    ///< 1 while a line grows exponentially by 20/s or more
   agreement,       ///< votes of several sensors, to those an alarm takes
 };

@@ -42,22 +42,14 @@ void CutTests::ask_of_other_speeds(Explanation& why, double line_hz, const Speed
 }
 
 void CutTests::ask_of_the_slow_line(Explanation& why) const noexcept {
-  const SlowWindow& window = slow_windows_[slow_orders_at_];
-  ask_of_other_speeds(why, slow_line_.frequency_hz(), slow_speed_, window.power, slowest_.spectrum(window.at, 0));
-  why.ask(Quantity::mains_distance, from_the_mains(slow_line_.frequency_hz()), mains_width_hz);
-  why.ask(Quantity::asynchronous_ratio, slow_line_.ratio(), SlowLine::least_ratio);
-  why.ask(Quantity::line_share, slow_line_.share(), SlowLine::least_share);
-  why.ask(Quantity::line_lasting, slow_line_.lasting(), least_lasting);
-  why.ask(Quantity::line_rise, slow_line_.rise(), least_slow_rise);
-  why.ask(Quantity::line_holding, slow_line_.holding(), least_holding);
-  why.ask(Quantity::above_quiet, cut_.above_quiet(), quiet_is_known);
-  why.ask(Quantity::family_above_quiet, energy_ratio(slow_line_.energy(), cut_.quiet()), slow_level);
-  why.ask(Quantity::staying, cut_.staying(), leaves);
-  // Until the speed has been corrected after an entry, tooth passing stands beside its orders.
-  const double teeth_hz = slow_speed_.hint_hz() * std::max(1, setup_.teeth);
-  const double multiple = std::clamp(std::round(slow_line_.frequency_hz() / teeth_hz), 1.0, forced_multiples);
-  const bool forced = std::abs(slow_line_.frequency_hz() - multiple * teeth_hz) < forced_near * multiple * teeth_hz;
-  why.ask(Quantity::entered, cut_.entered_s(), forced ? forced_s : slow_settled * slow_windows_[slow_at_].seconds);
+  why.ask(Quantity::asynchronous_ratio, turn_split_.ratio(), least_rest);
+  why.ask(Quantity::line_holding, turn_split_.holding(), rest_holds);
+  why.ask(Quantity::line_rise, turn_split_.rise(), least_rest_rise);
+  why.ask(Quantity::anchored, turn_split_.repeating(), least_repeating);
+  why.ask(Quantity::staying, turn_split_.staying(), rest_staying);
+  why.ask(Quantity::above_quiet, turn_split_.above_quiet(), quiet_is_known);
+  why.ask(Quantity::entered, turn_split_.loud_s(), turn_split_.settled_s());
+  why.ask(Quantity::line_lasting, turn_split_.lasting(), rest_lasting);
 }
 
 void CutTests::explain_all() noexcept {
@@ -99,7 +91,7 @@ void CutTests::explain_all() noexcept {
     growth.ask(Quantity::line_to_swing, energy_ratio(grown_.energy, cut_.swing()), of_the_swing);
     ask_of_the_cut(growth, grown_hz_, near_);
   }
-  Explanation& slow = begin(Test::slow_ratio, alarm_hops);
+  Explanation& slow = begin(Test::slow_ratio, 1);
   if (slow_spindle_) ask_of_the_slow_line(slow);
   Explanation& runaway = begin(Test::runaway, 1);
   runaway.ask(Quantity::runaway_rise, rises_ ? 1.0 : 0.0, 1.0);
@@ -116,8 +108,8 @@ bool CutTests::stays(Test test) const noexcept {
   const Explanation& why = why_[static_cast<std::size_t>(test)];
   if (why.conditions > 0 && why.held() == why.conditions && test != Test::dominant) return true;
   if (test == Test::slow_ratio) {
-    return slow_spindle_ && slow_line_.ratio() >= 0.5 * SlowLine::least_ratio &&
-           cut_.above_quiet() >= 0.5 * quiet_is_known && slow_line_.left() >= least_left;
+    return slow_spindle_ && turn_split_.ratio() >= 0.5 * least_rest &&
+           turn_split_.above_quiet() >= 0.5 * quiet_is_known;
   }
   const bool of_line = alarm_ == Test::dominant || alarm_ == Test::runaway;
   switch (test) {

@@ -48,7 +48,8 @@ CutTests::CutTests(const Setup& setup)
                    .std_ratio = setup.speed_std_ratio,
                    .teeth = setup.teeth,
                    .lines = slowest_.spectrum(0, 0).line.size()}),
-      slow_line_(slowest_.spectrum(0, 0), slowest_.highest_hz(), setup.hop_s),
+      slow_line_(slowest_.spectrum(0, 0), slowest_.highest_hz()),
+      turn_split_(setup.sample_rate_hz, setup.channels, setup.hop_s),
       cut_(setup.hop_s, setup.machine ? setup.machine->quietest_energy : 0.0),
       dominant_(fast_.spectrum(0, 0).line.size(), setup.hop_s),
       growth_(fast_.highest_hz(), setup.hop_s),
@@ -105,6 +106,7 @@ void CutTests::reset() noexcept {
   speed_.reset();
   slow_speed_.reset();
   slow_line_.reset();
+  turn_split_.reset();
   search_.reset();
   cut_.reset();
   dominant_.reset();
@@ -250,6 +252,7 @@ void CutTests::follow_slow_line(std::uint64_t bad_channels) noexcept {
   slow_spindle_ = hint_hz >= lowest_rotation_hz && hint_hz <= highest_slow_hz;
   if (!slow_spindle_) {
     slow_line_.reset();
+    turn_split_.step({}, bad_channels);
     return;
   }
   const auto of_turns = [&](double turns_of_it) {
@@ -269,8 +272,9 @@ void CutTests::follow_slow_line(std::uint64_t bad_channels) noexcept {
   const auto block = static_cast<std::size_t>(slow_floor_orders * hint_hz / like.step_hz);
   slow_speed_.step(of_orders.power, floor_.of(of_orders.power, block, slow_floor_part), like);
   const SlowWindow& window = slow_windows_[slow_at_];
-  slow_line_.step(window.power, slowest_.spectrum(window.at, 0), slow_speed_.rotation_hz(),
-                  slowest_.past_s() >= window.seconds - 1e-9);
+  slow_line_.step(window.power, slowest_.spectrum(window.at, 0), slow_speed_.rotation_hz());
+  turn_split_.step(
+      {.rotation_hz = slow_speed_.rotation_hz(), .hint_hz = hint_hz, .teeth = std::max(1, setup_.teeth)}, bad_channels);
 }
 
 bool CutTests::may_be_the_cut(double frequency_hz) const noexcept {
@@ -449,6 +453,7 @@ CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t fra
   fast_.push(samples, frames);
   slow_.push(samples, frames);
   slowest_.push(samples, frames);
+  turn_split_.push(samples, frames);
   measure(bad_channels);
   bad_channels_ = bad_channels;
   follow_growth();

@@ -19,6 +19,7 @@
 #include "robomill/monitor/orders/slow_line.hpp"
 #include "robomill/monitor/orders/spectra.hpp"
 #include "robomill/monitor/orders/speed_tracker.hpp"
+#include "robomill/monitor/orders/turn_split.hpp"
 
 namespace robomill::monitor {
 
@@ -152,6 +153,7 @@ class CutTests {
   std::size_t slow_at_ = 0, slow_orders_at_ = 0;  // the one whose lines are followed; whose orders are
   SpeedTracker slow_speed_;
   SlowLine slow_line_;
+  TurnSplit turn_split_;
   bool slow_spindle_ = false;
   double energy_ = 0.0;  // of all, in the last 0.3 s
   CutState cut_;

@@ -93,6 +93,11 @@ class Spectra {
   /// The highest frequency that counts [Hz]; where the rate is reduced, a line there is shown 1.2 dB too small.
   [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
   [[nodiscard]] std::size_t channels() const noexcept { return channels_; }
+  [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }  ///< the reduced one
+  /// The last samples of a channel, oldest first; as many as the longest window's at most.
+  void last(std::size_t channel, std::span<float> out) const noexcept {
+    std::copy_n(ring_.data() + 2 * channel * size_ + at_ + size_ - out.size(), out.size(), out.data());
+  }
   /// Seconds pushed since construction or reset().
   [[nodiscard]] double past_s() const noexcept { return static_cast<double>(pushed_) / rate_hz_; }
   void reset() noexcept;
