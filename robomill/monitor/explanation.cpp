@@ -42,7 +42,8 @@ constexpr std::array quantity_table = {
     QuantityWords{Quantity::line_lasting, "line_lasting", "part of the last 0.4 s in which all of that was so"},
     QuantityWords{Quantity::other_speed, "other_speed",
                   "evidence for a speed at which it is an order, beyond that for the tracked one"},
-    QuantityWords{Quantity::line_holding, "line_holding", "what does not repeat, second half of its window to the first"},
+    QuantityWords{Quantity::line_holding, "line_holding",
+                  "what does not repeat, second half of its window to the first"},
     QuantityWords{Quantity::runaway_rise, "runaway_rise", "a line grows exponentially (1: it does)"},
     QuantityWords{Quantity::agreement, "agreement", "agreement of the sensors, to what an alarm takes"}};
 

@@ -249,10 +249,13 @@ void CutTests::follow_runaway() noexcept {
 // Of a slow spindle the orders are followed in sixteen turns, and the strongest line in eight.
 void CutTests::follow_slow_line(std::uint64_t bad_channels) noexcept {
   const double hint_hz = given_ ? slow_speed_.hint_hz() : 0.0;
+  const bool was_slow = slow_spindle_;
   slow_spindle_ = hint_hz >= lowest_rotation_hz && hint_hz <= highest_slow_hz;
   if (!slow_spindle_) {
-    slow_line_.reset();
-    turn_split_.step({}, bad_channels);
+    if (was_slow) {
+      slow_line_.reset();
+      turn_split_.reset();
+    }
     return;
   }
   const auto of_turns = [&](double turns_of_it) {
@@ -273,8 +276,8 @@ void CutTests::follow_slow_line(std::uint64_t bad_channels) noexcept {
   slow_speed_.step(of_orders.power, floor_.of(of_orders.power, block, slow_floor_part), like);
   const SlowWindow& window = slow_windows_[slow_at_];
   slow_line_.step(window.power, slowest_.spectrum(window.at, 0), slow_speed_.rotation_hz());
-  turn_split_.step(
-      {.rotation_hz = slow_speed_.rotation_hz(), .hint_hz = hint_hz, .teeth = std::max(1, setup_.teeth)}, bad_channels);
+  turn_split_.step({.rotation_hz = slow_speed_.rotation_hz(), .hint_hz = hint_hz, .teeth = std::max(1, setup_.teeth)},
+                   bad_channels);
 }
 
 bool CutTests::may_be_the_cut(double frequency_hz) const noexcept {
@@ -453,7 +456,7 @@ CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t fra
   fast_.push(samples, frames);
   slow_.push(samples, frames);
   slowest_.push(samples, frames);
-  turn_split_.push(samples, frames);
+  if (slow_spindle_) turn_split_.push(samples, frames);
   measure(bad_channels);
   bad_channels_ = bad_channels;
   follow_growth();

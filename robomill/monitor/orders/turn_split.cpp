@@ -15,8 +15,8 @@ namespace {
 using namespace thresholds;
 
 constexpr double enough_hz = 512.0, highest_order_hz = 256.0;
-constexpr std::array longest_s = {1.0};                   // four turns at the lowest speed
-constexpr double fewest_turns = 4.0, shortest_s = 0.4;    // of a window
+constexpr std::array longest_s = {1.0};                 // four turns at the lowest speed
+constexpr double fewest_turns = 4.0, shortest_s = 0.4;  // of a window
 constexpr double rise_s = 2.0, most_s = 1.0, lasting_s = 0.4;
 constexpr double quiet_memory_s = 10.0;
 constexpr std::size_t measured_each = 2;  // hops

@@ -30,11 +30,11 @@ class TurnSplit {
   void step(const Speed& speed, std::uint64_t bad_channels) noexcept;
   void reset() noexcept;
 
-  [[nodiscard]] double ratio() const noexcept;                           ///< of the rest, to what repeats
-  [[nodiscard]] double holding() const noexcept { return now_.holds; }   ///< of the rest, second half to the first
-  [[nodiscard]] double rise() const noexcept { return rise_; }           ///< of the rest, to its least of 2 s
-  [[nodiscard]] double repeating() const noexcept { return repeating_; } ///< of what repeats, to its most of a second
-  [[nodiscard]] double staying() const noexcept { return staying_; }     ///< of all, to its most of a second
+  [[nodiscard]] double ratio() const noexcept;                            ///< of the rest, to what repeats
+  [[nodiscard]] double holding() const noexcept { return now_.holds; }    ///< of the rest, second half to the first
+  [[nodiscard]] double rise() const noexcept { return rise_; }            ///< of the rest, to its least of 2 s
+  [[nodiscard]] double repeating() const noexcept { return repeating_; }  ///< of what repeats, to its most of a second
+  [[nodiscard]] double staying() const noexcept { return staying_; }      ///< of all, to its most of a second
   [[nodiscard]] double above_quiet() const noexcept { return above_quiet_; }  ///< of all, to its least of late
   [[nodiscard]] double loud_s() const noexcept { return loud_s_; }            ///< since it stands above that
   [[nodiscard]] double settled_s() const noexcept;                            ///< that an alarm asks of loud_s()
