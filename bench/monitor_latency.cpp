@@ -1,6 +1,6 @@
 // What a hop of 256 samples at 10,240 Hz costs over many of them, one thread: the streamed transform into 16 bands with
 // their entropy, and ChatterMonitor of each kind; by the processor's time and by the clock.
-//   monitor_latency [--hops 40000] [--channels 1]
+//   monitor_latency [--hops 40000] [--channels 1] [--rotation 80]
 // With more channels: one monitor of them all, and as many monitors of one channel, a hop of all of them at a time.
 // Prints a table, what a channel holds in memory, and the histograms as CSV for latency_histogram.py.
 #include <fmt/core.h>
@@ -45,11 +45,22 @@ double held_kib() {
   return static_cast<double>(now.uordblks + now.hblkhd) / 1024.0;
 }
 
+/// Of the spindle [Hz], and a hint that is off; chatter of the tool, of slow spindles of an arm.
+struct Cut {
+  double rotation_hz = 80.0;
+  [[nodiscard]] double hint_hz() const { return 81.0 / 80.0 * rotation_hz; }
+  [[nodiscard]] double chatter_hz() const { return rotation_hz > 45.0 ? 683.0 : 3.4 * rotation_hz; }
+};
+
 /// 20 s that join their own beginning: 2 s without a cut, so that each round begins with the search for its speed; then
 /// the cut, which chatters from 10 to 14 s.
-std::vector<float> rounds(int channels) {
-  std::vector<float> samples = monitor::testing::vibration(
-      {.channels = channels, .chatter_hz = 683.0, .starts_s = 10.0, .ends_s = 14.0, .seconds = 20.0});
+std::vector<float> rounds(const Cut& cut, int channels) {
+  std::vector<float> samples = monitor::testing::vibration({.rotation_hz = cut.rotation_hz,
+                                                            .channels = channels,
+                                                            .chatter_hz = cut.chatter_hz(),
+                                                            .starts_s = 10.0,
+                                                            .ends_s = 14.0,
+                                                            .seconds = 20.0});
   const auto idle = static_cast<std::ptrdiff_t>(2.0 * rate_hz) * channels;
   std::for_each(samples.begin(), samples.begin() + idle, [](float& sample) { sample *= 0.01F; });
   return samples;
@@ -86,8 +97,8 @@ std::span<const Sample> block_of(const std::vector<Sample>& samples, std::size_t
   return std::span(samples).subspan(n % (samples.size() / size) * size, size);
 }
 
-Costs transform(std::size_t hops) {
-  const std::vector<float> given = rounds(1);
+Costs transform(const Cut& cut, std::size_t hops) {
+  const std::vector<float> given = rounds(cut, 1);
   const std::vector<double> samples(given.begin(), given.end());
   Costs costs = {.what = "transform"};
   const double before_kib = held_kib();
@@ -107,18 +118,18 @@ Costs transform(std::size_t hops) {
   return costs;
 }
 
-monitor::MonitorOptions options(Kind kind, int channels) {
+monitor::MonitorOptions options(const Cut& cut, Kind kind, int channels) {
   return {.kind = kind,
           .sample_rate_hz = rate_hz,
           .channels = channels,
-          .spindle_speed_rad_per_s = 2.0 * std::numbers::pi * 81.0,
+          .spindle_speed_rad_per_s = 2.0 * std::numbers::pi * cut.hint_hz(),
           .teeth = 3,
           .threshold = 1e9};
 }
 
 /// `monitors` of `channels` each.
-Costs monitor_costs(Kind kind, int monitors, int channels, std::size_t hops) {
-  const std::vector<float> samples = rounds(channels);
+Costs monitor_costs(const Cut& cut, Kind kind, int monitors, int channels, std::size_t hops) {
+  const std::vector<float> samples = rounds(cut, channels);
   const std::string_view name = to_string(kind);
   Costs costs = {.what = monitors * channels == 1 ? std::string(name)
                          : monitors == 1          ? fmt::format("{}, one monitor of {} channels", name, channels)
@@ -126,7 +137,7 @@ Costs monitor_costs(Kind kind, int monitors, int channels, std::size_t hops) {
   const double before_kib = held_kib();
   std::vector<ChatterMonitor> all;
   all.reserve(static_cast<std::size_t>(monitors));
-  for (int i = 0; i < monitors; ++i) all.emplace_back(options(kind, channels));
+  for (int i = 0; i < monitors; ++i) all.emplace_back(options(cut, kind, channels));
   costs.kib_a_channel = (held_kib() - before_kib) / (monitors * channels);
   measure(costs, hops, [&](std::size_t n) {
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -174,20 +185,24 @@ void print_histograms(const std::vector<Costs>& all) {
 int main(int argc, char** argv) {
   std::size_t hops = 40'000;
   int channels = 1;
+  Cut cut;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string name = argv[i];
     if (name == "--hops") hops = std::strtoull(argv[i + 1], nullptr, 10);
     if (name == "--channels") channels = std::atoi(argv[i + 1]);
+    if (name == "--rotation") cut.rotation_hz = std::strtod(argv[i + 1], nullptr);
   }
-  if (hops < 1 || channels < 1 || channels > 64) {
-    fmt::print(stderr, "usage: monitor_latency [--hops 40000] [--channels 1]; at most 64 channels\n");
+  if (hops < 1 || channels < 1 || channels > 64 || !(cut.rotation_hz > 0.5 && cut.rotation_hz < 500.0)) {
+    fmt::print(
+        stderr,
+        "usage: monitor_latency [--hops 40000] [--channels 1] [--rotation 80]; at most 64 channels, 0.5 to 500 Hz\n");
     return 2;
   }
   std::vector<Costs> all;
-  if (channels == 1) all.push_back(transform(hops));
+  if (channels == 1) all.push_back(transform(cut, hops));
   for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
-    all.push_back(monitor_costs(kind, 1, channels, hops));
-    if (channels > 1) all.push_back(monitor_costs(kind, channels, 1, hops));
+    all.push_back(monitor_costs(cut, kind, 1, channels, hops));
+    if (channels > 1) all.push_back(monitor_costs(cut, kind, channels, 1, hops));
   }
   print_tables(all);
   print_histograms(all);
