@@ -98,10 +98,13 @@ void CutTests::explain_all() noexcept {
   ask_what_is_new();
 }
 
-// What stands beside the orders is no noise of the air.
+// What stands beside the orders is no noise of the air. Where the speed is not believed it may be the orders: then all
+// is louder than in a calm that is known.
 bool CutTests::lives() const noexcept {
-  return (cut_.above_quiet() >= quiet_is_known && found_far_.family >= 0.5 * level * cut_.quiet()) ||
-         found_far_.synchronous + found_far_.family >= explains * found_far_.whole;
+  const double loud = cut_.above_quiet();
+  if (loud >= quiet_is_known && found_far_.family >= 0.5 * level * cut_.quiet()) return true;
+  if (belief() < least_belief && calm_known_ && loud < least_loud) return false;
+  return found_far_.synchronous + found_far_.family >= explains * found_far_.whole;
 }
 
 bool CutTests::stays(Test test) const noexcept {

@@ -54,7 +54,8 @@ void CutState::step(const Measured& now, bool chatter) noexcept {
   rotation_hz_[hops_ % rotation_hz_.size()] = now.rotation_hz;
   ++hops_;
   if (now.full) {
-    quiet_ = quiet_ == 0.0 ? now.energy : std::min(now.energy, quiet_ * std::exp(hop_s_ / quiet_memory_s));
+    const double forgotten = chatter ? 1.0 : std::exp(hop_s_ / quiet_memory_s);  // chatter does not become the calm
+    quiet_ = quiet_ == 0.0 ? now.energy : std::min(now.energy, quiet_ * forgotten);
   }
   // What the tool brings with it stands at tooth passing; what chatter brings does not.
   const bool enters = seen && !chatter && now.energy > enters_by * before && now.energy > enters_above * quiet_ &&

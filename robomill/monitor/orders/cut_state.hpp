@@ -24,9 +24,11 @@ class CutState {
   void step(const Measured& now, bool chatter) noexcept;
   void reset() noexcept;
 
-  [[nodiscard]] double quiet() const noexcept { return quiet_; }  ///< the least E, forgotten over 10 s; 0: not known
-  [[nodiscard]] double above_quiet() const noexcept;              ///< E to it
-  [[nodiscard]] double synchronous_share() const noexcept;        ///< S/W
+  [[nodiscard]] double quiet() const noexcept {
+    return quiet_;
+  }  ///< the least E, forgotten over 10 s without chatter; 0: not known
+  [[nodiscard]] double above_quiet() const noexcept;        ///< E to it
+  [[nodiscard]] double synchronous_share() const noexcept;  ///< S/W
   /// S against what it must be for the speed to be right: 0.2 W; or half of what it was when it last held that in a
   /// cut, where chatter beside it holds the rest. >= 1: it is.
   [[nodiscard]] double anchored() const noexcept;

@@ -17,6 +17,8 @@ inline constexpr double most_of_another_speed = 0.1;  // of the mean of log‚ÇÅ‚Ç
 inline constexpr double explains = 0.35;              // of all energy, in the orders: the tool cuts
 inline constexpr double quiet_is_known = 4.0;         // of the quietest energy: something louder than it has been
 
+inline constexpr double least_loud = 2.0;  // of it: an alarm at a speed that is not believed is held
+
 // A calm is known, too, where a cut has had so little beside its orders, to these, for so long.
 inline constexpr double least_beside = 0.02, clean_s = 0.5;
 
