@@ -86,7 +86,8 @@ enum class Quantity : std::uint8_t {
   above_quiet,      ///< all energy to the least of late
   speed_belief,     ///< of the tracked speed, 0 to 1
   anchored,  ///< the multiples of rotation against what a right speed leaves them: a fifth of all, or half of before
-  cutting,   ///< the tool cuts: above_quiet/4 or the share of the multiples of rotation/0.35, the greater
+  cutting,   ///< the tool cuts: above_quiet/4 or the share of the multiples of rotation/0.35, the greater (slow_ratio:
+             ///< what repeats from turn to turn, to twice the least of all energy of late)
   staying,   ///< all energy to the most of the last 0.4 s: less is the tool leaving
   entered,   ///< s since the tool entered
   asynchronous_ratio,  ///< of the strongest family beside the orders, to the orders

@@ -48,6 +48,7 @@ void CutTests::ask_of_the_slow_line(Explanation& why) const noexcept {
   why.ask(Quantity::anchored, turn_split_.repeating(), least_repeating);
   why.ask(Quantity::staying, turn_split_.staying(), rest_staying);
   why.ask(Quantity::above_quiet, turn_split_.above_quiet(), quiet_is_known);
+  why.ask(Quantity::cutting, turn_split_.cutting() / least_cutting, 1.0);
   why.ask(Quantity::entered, turn_split_.loud_s(), turn_split_.settled_s());
   why.ask(Quantity::line_lasting, turn_split_.lasting(), rest_lasting);
 }

@@ -65,7 +65,7 @@ double TurnSplit::lasting() const noexcept {
 bool TurnSplit::holds() const noexcept {
   return measured_ > 0 && ratio() >= least_rest && holding() >= rest_holds && rise() >= least_rest_rise &&
          repeating() >= least_repeating && staying() >= rest_staying && above_quiet() >= quiet_is_known &&
-         loud_s() >= settled_s();
+         cutting() >= least_cutting && loud_s() >= settled_s();
 }
 
 // Whole turns, an even number of them: the halves are whole turns, too.
@@ -203,6 +203,7 @@ void TurnSplit::compare() noexcept {
   staying_ = energy_ratio(now_.whole, most.whole);
   quiet_ = quiet_ == 0.0 ? now_.whole : std::min(now_.whole, quiet_ * std::exp(measured_each_s_ / quiet_memory_s));
   above_quiet_ = energy_ratio(now_.whole, quiet_);
+  cutting_ = energy_ratio(now_.repeated, quiet_);
   loud_s_ = above_quiet_ >= quiet_is_known ? loud_s_ + measured_each_s_ : 0.0;
 }
 
@@ -210,7 +211,7 @@ void TurnSplit::step(const Speed& speed, std::uint64_t bad_channels) noexcept {
   if (speed.rotation_hz < lowest_rotation_hz) {
     now_ = {};
     measured_ = 0;
-    window_s_ = loud_s_ = quiet_ = rise_ = repeating_ = staying_ = above_quiet_ = 0.0;
+    window_s_ = loud_s_ = quiet_ = rise_ = repeating_ = staying_ = above_quiet_ = cutting_ = 0.0;
     std::ranges::fill(stood_, 0);
     return;
   }

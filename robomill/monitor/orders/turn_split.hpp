@@ -35,6 +35,7 @@ class TurnSplit {
   [[nodiscard]] double rise() const noexcept { return rise_; }            ///< of the rest, to its least of 2 s
   [[nodiscard]] double repeating() const noexcept { return repeating_; }  ///< of what repeats, to its most of a second
   [[nodiscard]] double staying() const noexcept { return staying_; }      ///< of all, to its most of a second
+  [[nodiscard]] double cutting() const noexcept { return cutting_; }  ///< of what repeats, to the least of all of late
   [[nodiscard]] double above_quiet() const noexcept { return above_quiet_; }  ///< of all, to its least of late
   [[nodiscard]] double loud_s() const noexcept { return loud_s_; }            ///< since it stands above that
   [[nodiscard]] double settled_s() const noexcept;                            ///< that an alarm asks of loud_s()
@@ -70,7 +71,7 @@ class TurnSplit {
   bool skip_ = false;
   Energies now_;
   double window_s_ = 0.0, loud_s_ = 0.0, quiet_ = 0.0;
-  double rise_ = 0.0, repeating_ = 0.0, staying_ = 0.0, above_quiet_ = 0.0;
+  double rise_ = 0.0, repeating_ = 0.0, staying_ = 0.0, above_quiet_ = 0.0, cutting_ = 0.0;
 };
 
 }  // namespace robomill::monitor
