@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -73,16 +74,17 @@ void require_sensors(const MonitorOptions& options) {
   if (options.sensors.size() != static_cast<std::size_t>(options.channels)) {
     throw InvalidInput("sensors", static_cast<double>(options.sensors.size()), "", "must be one a channel");
   }
+  std::array<int, most> channels = {};
+  for (int c = 0; c < options.channels; ++c) {
+    const int of = options.sensors[static_cast<std::size_t>(c)];
+    if (c == options.tachometer_channel) continue;
+    require_between("sensors", of, 0.0, most - 1.0, "", "must be in [0, 7]");
+    ++channels.at(static_cast<std::size_t>(of));
+  }
   const int count = options.sensor_count();
-  if (count > most) throw InvalidInput("sensors", count, "", fmt::format("must be {} at most", most));
   for (int sensor = 0; sensor < count; ++sensor) {
-    bool has_one = false;
-    for (int c = 0; c < options.channels; ++c) {
-      const int of = options.sensors[static_cast<std::size_t>(c)];
-      if (of < 0) throw InvalidInput("sensors", of, "", "must count from 0 on");
-      has_one = has_one || (of == sensor && c != options.tachometer_channel);
-    }
-    if (!has_one) throw InvalidInput("sensors", sensor, "", "must have a channel of vibration each");
+    if (channels.at(static_cast<std::size_t>(sensor)) > 0) continue;
+    throw InvalidInput("sensors", sensor, "", "must have a channel of vibration each");
   }
   if (count > 1 && options.kind != Kind::comb_cusum) {
     throw InvalidInput("sensors", count, "", "must be one with energy-entropy", "Its threshold holds for one sensor");
@@ -101,8 +103,7 @@ void require_same_signal(const Machine& machine, const MonitorOptions& options) 
   const auto sensors = static_cast<std::size_t>(options.sensor_count());
   if (machine.sensors() != sensors) {
     throw InvalidInput("machine",
-                       fmt::format("was learnt with {} sensors, and the samples have {}", machine.sensors(), sensors),
-                       hint);
+                       fmt::format("is of {} sensors, and the samples are of {}", machine.sensors(), sensors), hint);
   }
   for (std::size_t s = 0; s < sensors; ++s) {
     int channels = 0;

@@ -86,9 +86,8 @@ enum class Quantity : std::uint8_t {
   above_quiet,      ///< all energy to the least of late
   speed_belief,     ///< of the tracked speed, 0 to 1
   anchored,  ///< the multiples of rotation against what a right speed leaves them: a fifth of all, or half of before
-  cutting,   ///< the tool cuts: above_quiet/4 or the share of the multiples of rotation/0.35, the greater (slow_ratio:
-             ///< what repeats from turn to turn, to twice the least of all energy of late)
-  staying,   ///< all energy to the most of the last 0.4 s: less is the tool leaving
+  cutting,   ///< the tool cuts: above_quiet/4 or the share of the multiples of rotation/0.35, the greater
+  staying,   ///< all energy to the most of the last 0.4 s, slow_ratio: of a second; less is the tool leaving
   entered,   ///< s since the tool entered
   asynchronous_ratio,  ///< of the strongest family beside the orders, to the orders
   family_above_quiet,  ///< of that family, to the least of all energy of late
@@ -103,11 +102,16 @@ enum class Quantity : std::uint8_t {
   line_kept_up,    ///< the same of the last turn and of the one before, the less of both
   line_spread,     ///< of that energy over the window, 1: even; knocks are not
   line_new,        ///< of the line, to what the machine shows there without chatter
-  line_lasting,    ///< slow_ratio: of the last 0.4 s, the part in which all that it asks was so
   other_speed,     ///< evidence for a speed at which the line is an order, beyond that for the tracked one
-  line_holding,    ///< slow_ratio: what does not repeat, second half of its window to the first: what rings falls
-  runaway_rise,    ///< 1 while a line grows exponentially by 20/s or more
-  agreement,       ///< votes of several sensors, to those an alarm takes
+  rest_ratio,      ///< slow_ratio: of what does not repeat from turn to turn, to what does
+  rest_holding,    ///< of that, second half of its window to the first: what rings falls
+  rest_rise,       ///< of that, to its least of 2 s
+  rest_lasting,    ///< of the last 0.4 s, the part in which all that slow_ratio asks was so
+  repeating,       ///< of what repeats, to its most of a second: it goes where the tool leaves
+  repeating_above_quiet,  ///< of what repeats, to the least of all energy of late: it comes with the cut
+  loud_for,               ///< s for which all energy has stood above the quietest
+  runaway_rise,           ///< 1 while a line grows exponentially by 20/s or more
+  agreement,              ///< votes of several sensors, to those an alarm takes
 };
 /// One of what a test asks for.
 struct Condition {
@@ -147,7 +151,7 @@ enum Fault : std::uint32_t {
   not_finite = 1,          ///< NaN, infinite or |sample| >= 1e15; the last good one stands in for them
   stuck = 2,               ///< a channel that moved repeats one value for >= 20 ms
   clipped = 4,             ///< |sample| >= 0.9999 full_scale, or two runs and more of 4 equal samples at the extremes
-  dead_channel = 8,        ///< a channel that never moved, or with a variance < 1e-8 of the loudest channel's
+  dead_channel = 8,        ///< a channel that never moved, or with a variance < 1e-8 of its sensor's loudest one
   wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
   speed_unknown = 32       ///< no comb was found: in air, or the tests run without
 };
@@ -166,9 +170,8 @@ struct ROBOMILL_API MonitorOptions {
   /// sensor's channels are added; sensors are judged apart and an alarm takes their agreement (README.md). Empty: one
   /// sensor.
   std::vector<int> sensors = {};
-  int agreeing_sensors =
-      0;  ///< that must detect chatter at one line, >= 0; 0: more than half of those that see the cut
-  int pulses_per_revolution = 1;         ///< of the tachometer or encoder; in [1, 10000]
+  int agreeing_sensors = 0;       ///< votes at one line that an alarm takes, >= 0; 0: (n + 1)/2 of n that see the cut
+  int pulses_per_revolution = 1;  ///< of the tachometer or encoder; in [1, 10000]
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
   double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
   /// Below it the spindle stands still: BlindReason::standstill. In [1, 100000] rpm; a hint is none or above it.

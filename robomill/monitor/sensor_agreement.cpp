@@ -1,6 +1,7 @@
 #include "robomill/monitor/sensor_agreement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -38,6 +39,7 @@ std::vector<SensorPart> parts_by_sensor(const MonitorOptions& options) {
     parts[s].options = options;
     MonitorOptions& own = parts[s].options;
     own.sensors.clear();
+    own.agreeing_sensors = 0;
     if (one) continue;
     if (options.tachometer_channel >= 0) {
       own.tachometer_channel = static_cast<int>(parts[s].channels.size());
@@ -77,6 +79,7 @@ void SensorAgreement::reset() noexcept {
     sensor.detector->reset();
     sensor.decision = {};
     sensor.unseen_s = never_s;
+    sensor.holds = false;
   }
   chatter_ = false;
 }
@@ -95,38 +98,63 @@ void SensorAgreement::judge(Sensor& sensor, const Hop& hop) noexcept {
   sensor.unseen_s = sensor.sees_the_cut() ? 0.0 : sensor.unseen_s + hop_s_;
 }
 
-/// The strongest vote; without any the sensor that is closest to an alarm.
+/// Of the line that has most votes, the strongest; without any vote the sensor that is closest to an alarm.
 const SensorAgreement::Sensor& SensorAgreement::leading() const noexcept {
-  return *std::ranges::max_element(sensors_, {}, [](const Sensor& sensor) {
+  return *std::ranges::max_element(sensors_, {}, [&](const Sensor& sensor) {
+    if (!sensor.usable) return std::array{-1.0, 0.0, 0.0};
     const Explanation& why = sensor.decision.why;
     const double held = why.conditions > 0 ? static_cast<double>(why.held()) / why.conditions : 0.0;
-    return sensor.usable ? sensor.vote() + 1e-3 * std::min(100.0, sensor.decision.score) + 1e-6 * held : -1.0;
+    return std::array{sensor.vote() > 0.0 ? votes(sensor) : 0.0, sensor.decision.score, held};
   });
 }
 
-double SensorAgreement::votes(const Sensor& leader) const noexcept {
-  const double line_hz = leader.decision.chatter_frequency_hz;
-  const double rotation_hz = leader.decision.spindle_speed_rad_per_s / units::revolution;
+bool SensorAgreement::at_one_line(const Sensor& a, const Sensor& b) const noexcept {
+  const double line_hz = a.decision.chatter_frequency_hz;
+  const double rotation_hz = a.decision.spindle_speed_rad_per_s / units::revolution;
   double near_hz = std::max(one_line * window_hz_, one_line_ratio * line_hz);
   if (rotation_hz > 0.0) near_hz = std::min(near_hz, most_of_rotation * rotation_hz);
+  return to_the_other(b.decision.chatter_frequency_hz, line_hz, rotation_hz) <= near_hz;
+}
+
+double SensorAgreement::votes(const Sensor& leader) const noexcept {
   double sum = 0.0;
   for (const Sensor& sensor : sensors_) {
-    if (to_the_other(sensor.decision.chatter_frequency_hz, line_hz, rotation_hz) <= near_hz) sum += sensor.vote();
+    if (at_one_line(leader, sensor)) sum += sensor.vote();
   }
   return sum;
 }
 
+double SensorAgreement::enough() const noexcept {
+  const auto count = [&](auto of) { return static_cast<double>(std::ranges::count_if(sensors_, of)); };
+  double n = count([](const Sensor& s) { return s.usable && (s.saw_the_cut() || s.vote() > 0.0); });
+  if (!std::ranges::any_of(sensors_, [](const Sensor& s) { return s.usable && s.saw_the_cut(); })) {
+    n = std::max(1.0, count([](const Sensor& s) { return s.usable; }));
+  }
+  return agreeing_ > 0 ? std::min<double>(agreeing_, n) : 0.5 * (n + 1.0);
+}
+
+/// A tone that another sensor alone shows holds no alarm.
+void SensorAgreement::hold(const Sensor& leader, double agreement) noexcept {
+  for (Sensor& sensor : sensors_) {
+    const auto joins = [&](const Sensor& other) {
+      return other.holds && other.chatters() && at_one_line(other, sensor);
+    };
+    if (!chatter_) {
+      sensor.holds = agreement >= 1.0 - 1e-9 && sensor.vote() > 0.0 && at_one_line(leader, sensor);
+    } else if (sensor.chatters() && std::ranges::any_of(sensors_, joins)) {
+      sensor.holds = true;
+    }
+  }
+  chatter_ = std::ranges::any_of(sensors_, [](const Sensor& s) { return s.holds && s.chatters(); });
+}
+
 void SensorAgreement::decide(const Hop& hop, Decision& decision) noexcept {
   for (Sensor& sensor : sensors_) judge(sensor, hop);
-  const Sensor& leader = leading();
-  const auto count = [&](auto of) { return static_cast<double>(std::ranges::count_if(sensors_, of)); };
-  const double seeing = count([](const Sensor& s) { return s.usable && s.saw_the_cut(); });
-  const double voters = seeing > 0.0 ? seeing : std::max(1.0, count([](const Sensor& s) { return s.usable; }));
-  const double enough = agreeing_ > 0 ? std::min<double>(agreeing_, voters) : 0.5 * (voters + 1.0);
-  const double agreement = votes(leader) / enough;
-  const bool detected =
-      std::ranges::any_of(sensors_, [](const Sensor& s) { return s.usable && s.decision.state == State::chatter; });
-  chatter_ = detected && (chatter_ || agreement >= 1.0 - 1e-9);
+  const Sensor& first = leading();
+  const double agreement = votes(first) / enough();
+  hold(first, agreement);
+  const auto holding = [](const Sensor& s) { return s.holds && s.chatters() ? s.decision.score : -1.0; };
+  const Sensor& leader = chatter_ ? *std::ranges::max_element(sensors_, {}, holding) : first;
 
   const std::uint32_t input_faults = decision.faults;
   const Sensor& shown = *std::ranges::max_element(sensors_, {}, &Sensor::usable);

@@ -19,9 +19,10 @@ struct SensorPart {
 [[nodiscard]] std::vector<SensorPart> parts_by_sensor(const MonitorOptions& options);
 
 /// Several sensors of one cut: each is judged by a detector of its own, and an alarm takes their agreement. Each votes
-/// with its score up to 1, where its line is that of the strongest vote, or differs from it by a multiple of rotation.
-/// The score is the votes to those an alarm takes: MonitorOptions::agreeing_sensors, or (n + 1)/2; n sensors have seen
-/// the cut within 3 s (where none has, all of them). The alarm stays while a sensor detects chatter.
+/// with its score, up to 1. Votes count together where their lines are one, or differ by a multiple of rotation; those
+/// of the line that has most count. The score is these to what an alarm takes: MonitorOptions::agreeing_sensors, or (n
+/// + 1)/2; n sensors vote or have seen the cut within 3 s (where none has, all of them). The alarm stays while one that
+/// voted for it, or has joined it at its line, detects chatter.
 class SensorAgreement final : public Detector {
  public:
   static constexpr double seen_for_s = 3.0;
@@ -40,15 +41,21 @@ class SensorAgreement final : public Detector {
     std::unique_ptr<OrderDetector> detector;
     std::vector<double> samples;  // of the hop, channel after channel
     Decision decision;
-    bool usable = false;
-    double unseen_s = never_s;  // since it saw the cut
+    bool usable = false, holds = false;  // the alarm
+    double unseen_s = never_s;           // since it saw the cut
     [[nodiscard]] double vote() const noexcept;
-    [[nodiscard]] bool sees_the_cut() const noexcept { return (decision.faults & speed_unknown) == 0; }
+    [[nodiscard]] bool sees_the_cut() const noexcept {
+      return (decision.faults & speed_unknown) == 0 && decision.reason != BlindReason::standstill;
+    }
+    [[nodiscard]] bool chatters() const noexcept { return usable && decision.state == State::chatter; }
     [[nodiscard]] bool saw_the_cut() const noexcept { return unseen_s < seen_for_s; }
   };
   void judge(Sensor& sensor, const Hop& hop) noexcept;
   [[nodiscard]] const Sensor& leading() const noexcept;
+  [[nodiscard]] bool at_one_line(const Sensor& a, const Sensor& b) const noexcept;
   [[nodiscard]] double votes(const Sensor& leader) const noexcept;
+  [[nodiscard]] double enough() const noexcept;
+  void hold(const Sensor& leader, double agreement) noexcept;
   void report_speed(Decision& decision) const noexcept;
   [[nodiscard]] BlindReason reason() const noexcept;
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -74,6 +75,21 @@ TEST(SensorAgreement, AlarmsWhereMoreThanHalfDetectChatterAtOneLine) {
   EXPECT_EQ(first_alarm_s(decisions({{chatters, calm, calm}, {}})), -1.0);
   EXPECT_EQ(first_alarm_s(decisions({{chatters, elsewhere, calm}, {}})), -1.0);
   EXPECT_EQ(first_alarm_s(decisions({{chatters, elsewhere}, {}})), -1.0);
+  // A tone of one sensor, however loud, hides nothing.
+  SyntheticCut tone = elsewhere;
+  tone.chatter = 5.0;
+  EXPECT_NEAR(first_alarm_s(decisions({{tone, chatters, chatters}, {}})), alone_s, 0.06);
+}
+
+// … and holds no alarm, if it was there before or comes while the others chatter.
+TEST(SensorAgreement, AnAlarmEndsWithTheSensorsThatHoldIt) {
+  SyntheticCut ends = chatters, later = elsewhere;
+  ends.ends_s = later.starts_s = 3.0;
+  for (const SyntheticCut& tone : {elsewhere, later}) {
+    const std::vector<Decision> all = decisions({{ends, tone, ends}, {}});
+    EXPECT_GT(first_alarm_s(all), 2.0);
+    EXPECT_NE(all.back().state, State::chatter);
+  }
 }
 
 // A sideband of chatter by the rotation is the same line.
@@ -105,11 +121,13 @@ TEST(SensorAgreement, TheOrderOfSensorsDoesNotCount) {
   const std::vector<float> samples = joined(sensors);
   MonitorOptions options = options_of(sensors);
   const std::vector<Decision> one = decisions_of(options, samples);
-  options.sensors = {2, 1, 0};
+  options.sensors = {1, 2, 0};
   const std::vector<Decision> other = decisions_of(options, samples);
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].state, other[i].state) << one[i].time_s;
-    EXPECT_EQ(one[i].score > 0.0, other[i].score > 0.0) << one[i].time_s;
+    if (one[i].state != State::chatter) continue;
+    EXPECT_EQ(one[i].chatter_frequency_hz, other[i].chatter_frequency_hz);
+    EXPECT_EQ(one[i].channel, other[i].channel);
   }
 }
 
@@ -210,6 +228,7 @@ TEST(SensorAgreement, RejectsWhatItCannotDo) {
   EXPECT_EQ(field([](MonitorOptions& o) { o.sensors = {0, 0, 2}; }), "sensors");
   EXPECT_EQ(field([](MonitorOptions& o) { o.sensors = {0, -1, 1}; }), "sensors");
   EXPECT_EQ(field([](MonitorOptions& o) { o.sensors = {0, 0, 8}; }), "sensors");
+  EXPECT_EQ(field([](MonitorOptions& o) { o.sensors = {0, 0, std::numeric_limits<int>::max()}; }), "sensors");
   EXPECT_EQ(field([](MonitorOptions& o) {
               o.sensors = {0, 1, 0};
               o.tachometer_channel = 0;
@@ -235,6 +254,7 @@ TEST(SensorAgreement, LearnsAMachineBySensor) {
   still.starts_s = -10.0;
   still.chatter = 0.3;
   MonitorOptions options = options_of({{still, calm}, {}});
+  options.agreeing_sensors = 2;
   const std::vector<CalmRecording> recordings = {{.name = "calm", .samples = joined({{still, calm}, {1.0, 1e-3}})}};
   const Machine machine = learn_machine(recordings, options);
   ASSERT_EQ(machine.sensors(), 2U);
@@ -242,18 +262,25 @@ TEST(SensorAgreement, LearnsAMachineBySensor) {
   EXPECT_EQ(machine.channels, 1);
   EXPECT_EQ(machine.others.front().channels, 1);
   EXPECT_NEAR(machine.others.front().quietest_energy * 1e6, machine.quietest_energy, 0.5 * machine.quietest_energy);
+  const std::vector<float> weak = joined({{chatters, chatters}, {0.3, 3e-4}});
+  EXPECT_GT(first_alarm_s(decisions_of(options, weak)), 2.0);
   options.machine = std::make_shared<const Machine>(machine);
   EXPECT_NO_THROW(options.validate());
-  EXPECT_EQ(first_alarm_s(decisions_of(options, joined({{chatters, chatters}, {0.3, 3e-4}}))), -1.0);
+  EXPECT_EQ(first_alarm_s(decisions_of(options, weak)), -1.0);
   options.sensors = {0, 0};
+  options.agreeing_sensors = 0;
   EXPECT_EQ(test::field_of([&] { options.validate(); }), "machine");
 }
 
 TEST(SensorAgreement, AllocatesNothingInAHop) {
-  const Sensors sensors = {{chatters, chatters, calm}, {}};
-  ChatterMonitor monitor(options_of(sensors));
-  const std::vector<float> samples = joined(sensors);
-  EXPECT_EQ(test::allocations([&] { monitor.push(samples); }), 0U);
+  for (const double rotation_hz : {80.0, 20.0, 6.0}) {
+    SyntheticCut cut = chatters;
+    cut.rotation_hz = rotation_hz;
+    const Sensors sensors = {{cut, cut, calm}, {}};
+    ChatterMonitor monitor(options_of(sensors));
+    const std::vector<float> samples = joined(sensors);
+    EXPECT_EQ(test::allocations([&] { monitor.push(samples); }), 0U) << rotation_hz;
+  }
 }
 
 }  // namespace sensor_agreement_test

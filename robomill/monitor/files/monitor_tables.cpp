@@ -213,7 +213,7 @@ const Schema<MonitorOptions>& detector_table() {
            .in_unit()
            .above(0.0),
        key("agreeing_sensors", &MonitorOptions::agreeing_sensors,
-           "of several sensors: as many must detect chatter at one line; 0: more than half of those that see the cut")
+           "votes of several sensors at one line that an alarm takes, each up to 1; 0: (n + 1)/2 of n that see the cut")
            .at_least(0.0)});
   return table;
 }

@@ -43,7 +43,15 @@ void read_act(io::TomlFile& file, ActSettings& act) {
   }
 }
 
-/// By the names given, else by the units that the channels' names state.
+/// By the unit that a channel's name states: "m/s²" and "g" are one. Empty: none.
+std::string quantity_of(const std::string& channel) {
+  const std::string unit = io::unit_of_column(channel);
+  if (unit.empty()) return {};
+  const io::Quantity quantity = io::parse_unit(unit).quantity;
+  return quantity == io::Quantity::unknown ? unit : fmt::format("{}", static_cast<int>(quantity));
+}
+
+/// By the names given, else by the quantities that the channels' names state.
 void number_sensors(const io::TomlFile& file, MonitorFile& out) {
   const std::vector<std::string>& channels = out.columns.channels;
   std::vector<std::string> names = out.sensors;
@@ -54,7 +62,12 @@ void number_sensors(const io::TomlFile& file, MonitorFile& out) {
   }
   if (names.empty()) {
     if (out.options.kind != Kind::comb_cusum) return;
-    for (std::size_t c = 0; c < vibration; ++c) names.push_back(io::unit_of_column(channels[c]));
+    for (std::size_t c = 0; c < vibration; ++c) names.push_back(quantity_of(channels[c]));
+    // One that says nothing is of the first that does.
+    const auto first = std::ranges::find_if(names, [](const std::string& name) { return !name.empty(); });
+    if (first == names.end()) return;
+    const std::string said = *first;
+    std::ranges::replace(names, std::string(), said);
   }
   std::vector<std::string> unlike;
   out.options.sensors.clear();
@@ -180,6 +193,7 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   out += "\n[detector]\n";
   append_table(out, detector_table(), o, [&](const std::string& key, bool /*differs*/) {
     const bool published = key == "entropy" || key == "threshold" || key == "alarm";
+    if (key == "agreeing_sensors") return o.agreeing_sensors > 0;
     return o.kind == Kind::energy_entropy ? key != "false_alarms_per_hour" : !published;
   });
   return out;

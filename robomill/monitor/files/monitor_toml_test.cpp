@@ -31,6 +31,7 @@ TEST(MonitorToml, NumbersSensorsAsTheyCome) {
   ASSERT_EQ(units.notes.size(), 1U);
   EXPECT_NE(units.notes.front().find("i1 [A] (sensor 2)"), std::string::npos) << units.notes.front();
   EXPECT_TRUE(read("channels = [\"ax_m_per_s2\", \"ay_m_per_s2\"]\n").options.sensors.empty());
+  EXPECT_TRUE(read("channels = [\"ax_m_per_s2\", \"ay\", \"az [g]\"]\n").options.sensors.empty());
   EXPECT_TRUE(read("channels = [1, 2]\nsensors = [\"a\", \"a\"]\n").options.sensors.empty());
   const std::string error = test::rejection([&] { (void)read("channels = [1, 2]\nsensors = [\"a\"]\n"); });
   EXPECT_NE(error.find("m.toml:4: signal.sensors"), std::string::npos) << error;

@@ -30,27 +30,27 @@ void CutTests::ask_of_the_cut(Explanation& why, double line_hz, std::size_t wind
   why.ask(Quantity::cutting, cut_.cutting(), 1.0);
   why.ask(Quantity::staying, cut_.staying(), leaves);
   why.ask(Quantity::entered, cut_.entered_s(), settled_s);
-  ask_of_other_speeds(why, line_hz, speed_, windows_[window].power, windows_[window].like());
+  ask_of_other_speeds(why, line_hz, windows_[window]);
   why.ask(Quantity::order_change, cut_.speed_change() * line_hz * windows_[window].like().seconds, still_order, true);
 }
 
 // While a spindle changes its speed the line of an order stands beside the orders of the speed before.
-void CutTests::ask_of_other_speeds(Explanation& why, double line_hz, const SpeedTracker& speed,
-                                   std::span<const float> power, const Spectrum& like) const noexcept {
+void CutTests::ask_of_other_speeds(Explanation& why, double line_hz, const Window& window) const noexcept {
   if (!given_ || !armed_ || line_hz <= 0.0) return;
-  why.ask(Quantity::other_speed, speed.lead_of_an_order(line_hz, power, like), most_of_another_speed, true);
+  why.ask(Quantity::other_speed, speed_.lead_of_an_order(line_hz, window.power, window.like()), most_of_another_speed,
+          true);
 }
 
-void CutTests::ask_of_the_slow_line(Explanation& why) const noexcept {
-  why.ask(Quantity::asynchronous_ratio, turn_split_.ratio(), least_rest);
-  why.ask(Quantity::line_holding, turn_split_.holding(), rest_holds);
-  why.ask(Quantity::line_rise, turn_split_.rise(), least_rest_rise);
-  why.ask(Quantity::anchored, turn_split_.repeating(), least_repeating);
-  why.ask(Quantity::staying, turn_split_.staying(), rest_staying);
+void CutTests::ask_of_the_turns(Explanation& why) const noexcept {
+  why.ask(Quantity::rest_ratio, turn_split_.ratio(), least_rest);
+  why.ask(Quantity::rest_holding, turn_split_.holding(), least_holding);
+  why.ask(Quantity::rest_rise, turn_split_.rise(), least_rest_rise);
+  why.ask(Quantity::repeating, turn_split_.repeating(), least_repeating);
+  why.ask(Quantity::staying, turn_split_.staying(), least_rest_staying);
   why.ask(Quantity::above_quiet, turn_split_.above_quiet(), quiet_is_known);
-  why.ask(Quantity::cutting, turn_split_.cutting() / least_cutting, 1.0);
-  why.ask(Quantity::entered, turn_split_.loud_s(), turn_split_.settled_s());
-  why.ask(Quantity::line_lasting, turn_split_.lasting(), rest_lasting);
+  why.ask(Quantity::repeating_above_quiet, turn_split_.repeating_above_quiet(), least_repeating_above_quiet);
+  why.ask(Quantity::loud_for, turn_split_.loud_s(), turn_split_.settled_s());
+  why.ask(Quantity::rest_lasting, turn_split_.lasting(), least_lasting);
 }
 
 void CutTests::explain_all() noexcept {
@@ -65,7 +65,7 @@ void CutTests::explain_all() noexcept {
   dominant.ask(Quantity::line_rise, dominant_.rise(), least_rise);
   dominant.ask(Quantity::above_quiet, cut_.above_quiet(), loud);
   dominant.ask(Quantity::line_rise_since, dominant_.rise_since(), least_rise_since);
-  ask_of_other_speeds(dominant, dominant_.frequency_hz(), speed_, windows_[s_0_3].power, windows_[s_0_3].like());
+  ask_of_other_speeds(dominant, dominant_.frequency_hz(), windows_[s_0_3]);
 
   Explanation& ratio = begin(Test::ratio, alarm_hops);
   Explanation& family = begin(Test::family, family_hops_);
@@ -93,7 +93,7 @@ void CutTests::explain_all() noexcept {
     ask_of_the_cut(growth, grown_hz_, near_);
   }
   Explanation& slow = begin(Test::slow_ratio, 1);
-  if (slow_spindle_) ask_of_the_slow_line(slow);
+  if (slow_spindle_ && slow_line_.frequency_hz() > 0.0) ask_of_the_turns(slow);
   Explanation& runaway = begin(Test::runaway, 1);
   runaway.ask(Quantity::runaway_rise, rises_ ? 1.0 : 0.0, 1.0);
   ask_what_is_new();

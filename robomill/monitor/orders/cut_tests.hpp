@@ -111,9 +111,8 @@ class CutTests {
   void follow_dominant() noexcept;
   void follow_runaway() noexcept;
   void follow_slow_line(std::uint64_t bad_channels) noexcept;
-  void ask_of_other_speeds(Explanation& why, double line_hz, const SpeedTracker& speed, std::span<const float> power,
-                           const Spectrum& like) const noexcept;
-  void ask_of_the_slow_line(Explanation& why) const noexcept;
+  void ask_of_other_speeds(Explanation& why, double line_hz, const Window& window) const noexcept;
+  void ask_of_the_turns(Explanation& why) const noexcept;
   [[nodiscard]] Of window_of(Test test) const noexcept;  // in which its line is read, of a slow line apart
   [[nodiscard]] std::pair<const Spectra*, std::size_t> read_in() const noexcept;
   [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;

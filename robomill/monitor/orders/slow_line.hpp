@@ -19,7 +19,7 @@ class SlowLine {
 
   [[nodiscard]] double frequency_hz() const noexcept { return frequency_hz_; }  ///< 0: none
 
-  static constexpr double highest_line_hz = 200.0;
+  static constexpr double highest_line_hz = 250.0;
 
  private:
   double highest_hz_;

@@ -45,8 +45,8 @@ inline constexpr double slow_speed_turns = 16.0, highest_slow_hz = 45.0, lowest_
 // the first; to its least of 2 s; what repeats, and all, to the most of a second; windows after an entry; of 0.4 s.
 // What repeats, to the least of all of late: hum and tones that come in air bring nothing that does. Chosen on the
 // arms' cuts of seeds 1 to 20 and 1001 to 1020.
-inline constexpr double least_rest = 0.3, rest_holds = 0.8, least_rest_rise = 4.0, least_repeating = 0.2;
-inline constexpr double least_cutting = 2.0;
-inline constexpr double rest_staying = 0.4, rest_settled = 0.7, rest_lasting = 7.0 / 8.0;
+inline constexpr double least_rest = 0.3, least_holding = 0.8, least_rest_rise = 4.0, least_repeating = 0.2;
+inline constexpr double least_repeating_above_quiet = 2.0;
+inline constexpr double least_rest_staying = 0.4, rest_settled = 0.7, least_lasting = 7.0 / 8.0;
 
 }  // namespace robomill::monitor::thresholds

@@ -14,11 +14,15 @@ namespace {
 
 using namespace thresholds;
 
-constexpr double enough_hz = 512.0, highest_order_hz = 256.0;
+constexpr double enough_hz = 512.0, highest_sought_hz = 256.0;
+constexpr double fitted = 0.49;                         // of the reduced rate: orders up to there
 constexpr std::array longest_s = {1.0};                 // four turns at the lowest speed
 constexpr double fewest_turns = 4.0, shortest_s = 0.4;  // of a window
 constexpr double rise_s = 2.0, most_s = 1.0, lasting_s = 0.4;
-constexpr double quiet_memory_s = 10.0;
+// The quietest is forgotten, and hardly where a cut stands out of it. A stream that begins in a cut has none: where
+// tooth passing holds the energy for a second, it is taken to be 12 dB lower.
+constexpr double quiet_memory_s = 10.0, quiet_memory_in_cut_s = 600.0;
+constexpr double begins_in_cut_s = 1.0, of_teeth = 0.5, quieter_by = 16.0;
 constexpr std::size_t measured_each = 2;  // hops
 
 // The speed is sought by the low multiples of rotation and of tooth passing, which hold most of forced vibration; by so
@@ -37,7 +41,7 @@ TurnSplit::TurnSplit(double sample_rate_hz, std::size_t channels, double hop_s)
       padded_(4 * std::bit_ceil(x_.size())),
       power_(padded_.size() / 2),
       line_(power_.size()),
-      cos_(static_cast<std::size_t>(highest_order_hz / lowest_rotation_hz) + 1),
+      cos_(static_cast<std::size_t>(fitted * spectra_.rate_hz() / lowest_rotation_hz) + 1),
       sin_(cos_.size()),
       turn_cos_(cos_.size()),
       turn_sin_(cos_.size()),
@@ -48,6 +52,7 @@ TurnSplit::TurnSplit(double sample_rate_hz, std::size_t channels, double hop_s)
 void TurnSplit::reset() noexcept {
   spectra_.reset();
   step({}, 0);
+  skip_ = false;
 }
 
 double TurnSplit::ratio() const noexcept {
@@ -63,9 +68,9 @@ double TurnSplit::lasting() const noexcept {
 }
 
 bool TurnSplit::holds() const noexcept {
-  return measured_ > 0 && ratio() >= least_rest && holding() >= rest_holds && rise() >= least_rest_rise &&
-         repeating() >= least_repeating && staying() >= rest_staying && above_quiet() >= quiet_is_known &&
-         cutting() >= least_cutting && loud_s() >= settled_s();
+  return measured_ > 0 && ratio() >= least_rest && holding() >= least_holding && rise() >= least_rest_rise &&
+         repeating() >= least_repeating && staying() >= least_rest_staying && above_quiet() >= quiet_is_known &&
+         repeating_above_quiet() >= least_repeating_above_quiet && loud_s() >= settled_s();
 }
 
 // Whole turns, an even number of them: the halves are whole turns, too.
@@ -117,7 +122,7 @@ double TurnSplit::best_speed(const Speed& speed, std::uint64_t bad_channels) noe
     for (std::size_t i = 1; i < line_.size(); ++i) power_[i] += std::norm(line_[i]);
   }
   const double low = speed.rotation_hz * std::max(low_of_rotation, low_of_teeth * speed.teeth);
-  const double highest_hz = std::min({highest_order_hz, 0.49 * spectra_.rate_hz(), low});
+  const double highest_hz = std::min({highest_sought_hz, fitted * spectra_.rate_hz(), low});
   const double off = loud_s_ < at_first_s ? speed_off_at_first : speed_off;
   const double last_hz = std::max(speed.rotation_hz, speed.hint_hz) * (1.0 + off);
   double best = speed.rotation_hz;
@@ -153,12 +158,11 @@ void TurnSplit::project(std::span<const float> x, double rotation_hz, std::size_
   }
 }
 
-TurnSplit::Energies TurnSplit::measure(double rotation_hz, std::uint64_t bad_channels) noexcept {
+TurnSplit::Energies TurnSplit::measure(double rotation_hz, int teeth, std::uint64_t bad_channels) noexcept {
   const std::span<float> x = window(rotation_hz);
   const std::size_t half = (x.size() + 1) / 2;
   window_s_ = static_cast<double>(x.size()) / spectra_.rate_hz();
-  const double highest_hz = std::min(highest_order_hz, 0.5 * spectra_.rate_hz());
-  const auto orders = std::min(cos_.size(), static_cast<std::size_t>(highest_hz / rotation_hz));
+  const auto orders = std::min(cos_.size(), static_cast<std::size_t>(fitted * spectra_.rate_hz() / rotation_hz));
   const double scale = 4.0 / static_cast<double>(x.size());
   Energies out;
   std::array<double, 2> rest = {};
@@ -176,6 +180,7 @@ TurnSplit::Energies TurnSplit::measure(double rotation_hz, std::uint64_t bad_cha
       const double b = scale * static_cast<double>(second[i]);
       const double both = 0.5 * (a + b);
       out.repeated += 0.5 * both * both;
+      if (teeth > 1 && (i % cos_.size() + 1) % static_cast<std::size_t>(teeth) == 0) out.teeth += 0.5 * both * both;
       energy[0] -= both * a - 0.5 * both * both;
       energy[1] -= both * b - 0.5 * both * both;
     }
@@ -201,24 +206,38 @@ void TurnSplit::compare() noexcept {
   rise_ = energy_ratio(now_.rest, least);
   repeating_ = energy_ratio(now_.repeated, most.repeated);
   staying_ = energy_ratio(now_.whole, most.whole);
-  quiet_ = quiet_ == 0.0 ? now_.whole : std::min(now_.whole, quiet_ * std::exp(measured_each_s_ / quiet_memory_s));
+  follow_quiet();
   above_quiet_ = energy_ratio(now_.whole, quiet_);
-  cutting_ = energy_ratio(now_.repeated, quiet_);
+  repeating_above_quiet_ = energy_ratio(now_.repeated, quiet_);
   loud_s_ = above_quiet_ >= quiet_is_known ? loud_s_ + measured_each_s_ : 0.0;
+}
+
+void TurnSplit::follow_quiet() noexcept {
+  const bool in_cut = quiet_ > 0.0 && now_.whole >= quiet_is_known * quiet_;
+  const double memory_s = in_cut ? quiet_memory_in_cut_s : quiet_memory_s;
+  quiet_ = quiet_ == 0.0 ? now_.whole : std::min(now_.whole, quiet_ * std::exp(measured_each_s_ / memory_s));
+  if (level_s_ < 0.0) return;
+  level_s_ = in_cut ? -1.0 : now_.teeth >= of_teeth * now_.whole ? level_s_ + measured_each_s_ : 0.0;
+  if (level_s_ < begins_in_cut_s) return;
+  quiet_ = now_.whole / quieter_by;
+  level_s_ = -1.0;
 }
 
 void TurnSplit::step(const Speed& speed, std::uint64_t bad_channels) noexcept {
   if (speed.rotation_hz < lowest_rotation_hz) {
     now_ = {};
     measured_ = 0;
-    window_s_ = loud_s_ = quiet_ = rise_ = repeating_ = staying_ = above_quiet_ = cutting_ = 0.0;
+    level_s_ = window_s_ = loud_s_ = quiet_ = rise_ = repeating_ = staying_ = above_quiet_ = repeating_above_quiet_ =
+        0.0;
     std::ranges::fill(stood_, 0);
     return;
   }
   skip_ = !skip_;
-  const auto taken = static_cast<double>(window(speed.rotation_hz).size());
-  if (skip_ || spectra_.past_s() * spectra_.rate_hz() < taken) return;
-  now_ = measure(best_speed(speed, bad_channels), bad_channels);
+  const std::uint64_t all = ~std::uint64_t{0} >> (64U - channels_);
+  if (skip_ || (~bad_channels & all) == 0) return;
+  const double rotation_hz = best_speed(speed, bad_channels);
+  if (spectra_.past_s() * spectra_.rate_hz() < static_cast<double>(window(rotation_hz).size())) return;
+  now_ = measure(rotation_hz, speed.teeth, bad_channels);
   past_[measured_ % past_.size()] = now_;
   ++measured_;
   compare();

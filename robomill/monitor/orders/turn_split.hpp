@@ -10,12 +10,12 @@
 
 namespace robomill::monitor {
 
-/// Splits what a slow spindle's cut shows below 250 Hz into what repeats from turn to turn, the multiples of rotation,
-/// and the rest: chatter of arms, whose modes lie at 8 to 60 Hz. Over whole turns without a window's slopes these
-/// multiples are orthogonal, so four turns tell them from all else, where a Hann window takes eight; and all lines of
-/// chatter count, however many sidebands share its energy. Noise and tones of a stable cut are a part of its forced
-/// vibration; what rings after an entry, a change of depth or a knock falls within the window; what the machine shows
-/// anyway has not risen; and where the tool leaves, what repeats goes. Nothing is allocated after construction.
+/// Splits what a slow spindle's cut shows below 250 to 500 Hz into what repeats from turn to turn, the multiples of
+/// rotation, and the rest: chatter of arms, whose modes lie at 8 to 60 Hz. Over whole turns without a window's slopes
+/// these multiples are orthogonal, so four turns tell them from all else, where a Hann window takes eight; and all
+/// lines of chatter count, however many sidebands share its energy. Noise and tones of a stable cut are a part of its
+/// forced vibration; what rings after an entry, a change of depth or a knock falls within the window; what the machine
+/// shows anyway has not risen; and where the tool leaves, what repeats goes. Nothing is allocated after construction.
 class TurnSplit {
  public:
   struct Speed {
@@ -26,7 +26,7 @@ class TurnSplit {
   TurnSplit(double sample_rate_hz, std::size_t channels, double hop_s);
   /// @param samples  all channels, channel after channel, `frames` each
   void push(std::span<const float> samples, std::size_t frames) noexcept { spectra_.push(samples, frames); }
-  /// A hop; every second one is measured. @param bad_channels  bit c: left out
+  /// A hop; every second one is measured, none without a channel. @param bad_channels  bit c: left out
   void step(const Speed& speed, std::uint64_t bad_channels) noexcept;
   void reset() noexcept;
 
@@ -35,7 +35,9 @@ class TurnSplit {
   [[nodiscard]] double rise() const noexcept { return rise_; }            ///< of the rest, to its least of 2 s
   [[nodiscard]] double repeating() const noexcept { return repeating_; }  ///< of what repeats, to its most of a second
   [[nodiscard]] double staying() const noexcept { return staying_; }      ///< of all, to its most of a second
-  [[nodiscard]] double cutting() const noexcept { return cutting_; }  ///< of what repeats, to the least of all of late
+  [[nodiscard]] double repeating_above_quiet() const noexcept {
+    return repeating_above_quiet_;
+  }  ///< of what repeats, to the least of all of late
   [[nodiscard]] double above_quiet() const noexcept { return above_quiet_; }  ///< of all, to its least of late
   [[nodiscard]] double loud_s() const noexcept { return loud_s_; }            ///< since it stands above that
   [[nodiscard]] double settled_s() const noexcept;                            ///< that an alarm asks of loud_s()
@@ -46,6 +48,7 @@ class TurnSplit {
  private:
   struct Energies {
     double whole = 0.0, rest = 0.0, repeated = 0.0;
+    double teeth = 0.0;  ///< of what repeats, at multiples of tooth passing
     double holds = 0.0;
   };
   [[nodiscard]] std::span<float> window(double rotation_hz) noexcept;
@@ -53,8 +56,9 @@ class TurnSplit {
   [[nodiscard]] double best_speed(const Speed& speed, std::uint64_t bad_channels) noexcept;
   [[nodiscard]] double at_multiples(double rotation_hz, double highest_hz) const noexcept;
   void project(std::span<const float> x, double rotation_hz, std::size_t orders) noexcept;
-  [[nodiscard]] Energies measure(double rotation_hz, std::uint64_t bad_channels) noexcept;
+  [[nodiscard]] Energies measure(double rotation_hz, int teeth, std::uint64_t bad_channels) noexcept;
   void compare() noexcept;
+  void follow_quiet() noexcept;
 
   double measured_each_s_;
   std::size_t channels_;
@@ -71,7 +75,8 @@ class TurnSplit {
   bool skip_ = false;
   Energies now_;
   double window_s_ = 0.0, loud_s_ = 0.0, quiet_ = 0.0;
-  double rise_ = 0.0, repeating_ = 0.0, staying_ = 0.0, above_quiet_ = 0.0, cutting_ = 0.0;
+  double level_s_ = 0.0;  // in which tooth passing held the energy, until a cut stood out of the quietest; < 0: one has
+  double rise_ = 0.0, repeating_ = 0.0, staying_ = 0.0, above_quiet_ = 0.0, repeating_above_quiet_ = 0.0;
 };
 
 }  // namespace robomill::monitor
