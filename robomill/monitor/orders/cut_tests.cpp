@@ -372,7 +372,7 @@ void CutTests::decide(std::uint64_t bad_channels, bool still) noexcept {
       rings = why.held() < why.conditions;
     }
     holds = holds && !(rings && in_each);
-    held_[at] = static_cast<std::uint8_t>(held_[at] << 1U | (holds ? 1U : 0U));
+    held_[at] = static_cast<std::uint8_t>((static_cast<unsigned>(held_[at]) << 1U) | (holds ? 1U : 0U));
     if (test == Test::growth) growing_ = holds ? growing_ + 1 : 0;
     const int hops = test == Test::growth ? static_cast<int>(growing_) : std::popcount(held_[at]);
     why.hops = std::min(hops, why.enough_hops);
