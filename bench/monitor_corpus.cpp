@@ -6,10 +6,11 @@
 // monitor_corpus --arms [first seed] [cuts a sensor]: the same of robot arms' cuts with slow spindles, by sensor,
 // sample rate and speed; and how many of the delays are within 8 turns of the spindle or half a second, whichever is
 // longer.
-// monitor_corpus --sensors [first seed] [cuts]: arms' cuts with three sensors at once: by their agreement, each alone,
-// and with the powers of all channels added. monitor_corpus --learnt [first seed] [cuts a class]: cuts with tones, a
-// run-up, a microphone, and air, without and with the machine that was learnt from three recordings in air of the same
-// machine.
+// monitor_corpus --sensors [first seed] [cuts]: arms' cuts with three sensors at once, by their agreement, each alone,
+// and with the powers of all channels added.
+//
+// monitor_corpus --learnt [first seed] [cuts a class]: cuts with tones, a run-up, a microphone, and air, without and
+// with the machine that was learnt from three recordings in air of the same machine.
 #include <fmt/core.h>
 
 #include <algorithm>

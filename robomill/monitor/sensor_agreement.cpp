@@ -156,7 +156,6 @@ void SensorAgreement::decide(const Hop& hop, Decision& decision) noexcept {
   const auto holding = [](const Sensor& s) { return s.holds && s.chatters() ? s.decision.score : -1.0; };
   const Sensor& leader = chatter_ ? *std::ranges::max_element(sensors_, {}, holding) : first;
 
-  const std::uint32_t input_faults = decision.faults;
   const Sensor& shown = *std::ranges::max_element(sensors_, {}, &Sensor::usable);
   decision.energy_entropy = shown.decision.energy_entropy;
   decision.bands = shown.decision.bands;
@@ -173,7 +172,6 @@ void SensorAgreement::decide(const Hop& hop, Decision& decision) noexcept {
   decision.why = leader.decision.why;
   decision.why.sensor = 1 + static_cast<int>(&leader - sensors_.data());
   if (decision.why.conditions > 0) decision.why.ask(Quantity::agreement, agreement, 1.0);
-  decision.faults = input_faults;
   report_speed(decision);
   decision.reason = reason();
 }

@@ -20,9 +20,10 @@ struct SensorPart {
 
 /// Several sensors of one cut: each is judged by a detector of its own, and an alarm takes their agreement. Each votes
 /// with its score, up to 1. Votes count together where their lines are one, or differ by a multiple of rotation; those
-/// of the line that has most count. The score is these to what an alarm takes: MonitorOptions::agreeing_sensors, or (n
-/// + 1)/2; n sensors vote or have seen the cut within 3 s (where none has, all of them). The alarm stays while one that
-/// voted for it, or has joined it at its line, detects chatter.
+/// of the line that has most count. The score is these to what an alarm takes:
+///   MonitorOptions::agreeing_sensors, or (n + 1)/2,
+/// n sensors vote or have seen the cut within 3 s (where none has, all of them). The alarm stays while one that voted
+/// for it, or has joined it at its line, detects chatter.
 class SensorAgreement final : public Detector {
  public:
   static constexpr double seen_for_s = 3.0;
@@ -60,7 +61,7 @@ class SensorAgreement final : public Detector {
   [[nodiscard]] BlindReason reason() const noexcept;
 
   double hop_s_, window_hz_;
-  int agreeing_;  // 0: more than half
+  int agreeing_;  // MonitorOptions::agreeing_sensors
   std::vector<Sensor> sensors_;
   bool chatter_ = false;
 };

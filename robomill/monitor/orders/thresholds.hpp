@@ -17,7 +17,7 @@ inline constexpr double most_of_another_speed = 0.1;  // of the mean of log‚ÇÅ‚Ç
 inline constexpr double explains = 0.35;              // of all energy, in the orders: the tool cuts
 inline constexpr double quiet_is_known = 4.0;         // of the quietest energy: something louder than it has been
 
-inline constexpr double least_loud = 2.0;  // of it: an alarm at a speed that is not believed is held
+inline constexpr double least_loud = 2.0;  // of the quietest energy: holds an alarm at a speed that is not believed
 
 // A calm is known, too, where a cut has had so little beside its orders, to these, for so long.
 inline constexpr double least_beside = 0.02, clean_s = 0.5;
@@ -42,9 +42,9 @@ inline constexpr double forced_off = 0.01, forced_off_unsure = 0.04, forced_beli
 // slow-ratio is asked up to the highest of these speeds [Hz], ratio from the lowest on.
 inline constexpr double slow_speed_turns = 16.0, highest_slow_hz = 45.0, lowest_family_hz = 27.0;
 // slow-ratio, of the rest that does not repeat from turn to turn: to what does; in the second half of its window, to
-// the first; to its least of 2 s; what repeats, and all, to the most of a second; windows after an entry; of 0.4 s.
-// What repeats, to the least of all of late: hum and tones that come in air bring nothing that does. Chosen on the
-// arms' cuts of seeds 1 to 20 and 1001 to 1020.
+// the first; to its least of 2 s; what repeats, and all, to the most of a second; windows for which the cut has stood
+// out; of 0.4 s. What repeats, to the least of all of late: hum and tones that come in air bring nothing that does.
+// Chosen on the arms' cuts of seeds 1 to 20 and 1001 to 1020.
 inline constexpr double least_rest = 0.3, least_holding = 0.8, least_rest_rise = 4.0, least_repeating = 0.2;
 inline constexpr double least_repeating_above_quiet = 2.0;
 inline constexpr double least_rest_staying = 0.4, rest_settled = 0.7, least_lasting = 7.0 / 8.0;

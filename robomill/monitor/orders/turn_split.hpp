@@ -35,9 +35,8 @@ class TurnSplit {
   [[nodiscard]] double rise() const noexcept { return rise_; }            ///< of the rest, to its least of 2 s
   [[nodiscard]] double repeating() const noexcept { return repeating_; }  ///< of what repeats, to its most of a second
   [[nodiscard]] double staying() const noexcept { return staying_; }      ///< of all, to its most of a second
-  [[nodiscard]] double repeating_above_quiet() const noexcept {
-    return repeating_above_quiet_;
-  }  ///< of what repeats, to the least of all of late
+  /// Of what repeats, to the least of all of late.
+  [[nodiscard]] double repeating_above_quiet() const noexcept { return repeating_above_quiet_; }
   [[nodiscard]] double above_quiet() const noexcept { return above_quiet_; }  ///< of all, to its least of late
   [[nodiscard]] double loud_s() const noexcept { return loud_s_; }            ///< since it stands above that
   [[nodiscard]] double settled_s() const noexcept;                            ///< that an alarm asks of loud_s()
