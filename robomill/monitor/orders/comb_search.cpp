@@ -47,7 +47,7 @@ void CombSearch::observe(std::span<const float> power, const Spectrum& like) noe
   for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = static_cast<float>(candidate_hz_[i] / like.step_hz);
   std::ranges::fill(held_, 0.0F);
   std::size_t count = 0;
-  for (int k = 1; (count = at_multiple(power, place_, k, energy.last, here_)) > 0; ++k) {
+  for (int k = 1; (count = at_multiple(power, like.dip, place_, k, energy.last, here_)) > 0; ++k) {
     for (std::size_t i = 0; i < count; ++i) held_[i] += here_[i];
   }
   std::size_t best = 0;

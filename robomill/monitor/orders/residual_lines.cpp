@@ -23,7 +23,7 @@ constexpr float ten_db = 14.4F;  // of the floor: 10 dB over the mean of noise, 
 
 ResidualLines::ResidualLines(const Spectrum& spectrum, const Setup& setup)
     : setup_(setup),
-      like_{.seconds = spectrum.seconds, .step_hz = spectrum.step_hz, .line = {}},
+      like_{.seconds = spectrum.seconds, .step_hz = spectrum.step_hz, .dip = spectrum.dip, .line = {}},
       bin_(spectrum.seconds * spectrum.step_hz),
       first_(spectrum.first_line()),
       lines_(std::min(spectrum.line.size() - 1, static_cast<std::size_t>(setup.highest_hz / spectrum.step_hz))) {
@@ -60,10 +60,7 @@ void ResidualLines::measure_orders(std::span<const float> power, ResidualFamily&
   order_energy_[count_ + 1] = 0.0F;
   const auto teeth = static_cast<std::size_t>(std::max(1, orders_.teeth));
   for (std::size_t k = 1; k <= count_; ++k) {
-    const double at = static_cast<double>(k) * order_step_;
-    const auto line = static_cast<std::size_t>(at);
-    const auto part = static_cast<float>(at - static_cast<double>(line));
-    order_energy_[k] = power[line] + part * (power[line + 1] - power[line]);
+    order_energy_[k] = like_.power_at(power, static_cast<double>(k) * order_step_);
     out.synchronous += static_cast<double>(order_energy_[k]);
     if (k % teeth == 0) out.teeth += static_cast<double>(order_energy_[k]);
   }

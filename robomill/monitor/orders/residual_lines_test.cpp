@@ -61,7 +61,7 @@ TEST(ResidualLines, OrdersAloneLeaveNothing) {
       if (rotation_hz * usual_windows_s.at(w) < 8.0) continue;  // as CutTests chooses its windows
       const Left left(tones, rotation_hz, w, teeth);
       EXPECT_NEAR(left.family.whole, energy(tones), 0.01 * energy(tones)) << rotation_hz;
-      EXPECT_NEAR(left.family.synchronous, energy(tones), 0.06 * energy(tones)) << rotation_hz << " " << teeth;
+      EXPECT_NEAR(left.family.synchronous, energy(tones), 0.015 * energy(tones)) << rotation_hz << " " << teeth;
       EXPECT_LT(left.residual(), 1e-3 * energy(tones)) << rotation_hz << " " << teeth;
       // A speed that is off by a thousandth leaves little more.
       EXPECT_LT(Left(tones, 1.001 * rotation_hz, w, teeth).family.family, 0.03 * energy(tones)) << rotation_hz;
@@ -86,7 +86,7 @@ TEST(ResidualLines, AFamilyCountsAsItsAmplitudesSay) {
     for (std::size_t w = 0; w < 2; ++w) {
       if (w == 1 && rotation_hz < 150.0) continue;
       const ResidualFamily left = Left(tones, rotation_hz, w).family;
-      EXPECT_NEAR(left.synchronous, cut, 0.06 * cut) << rotation_hz << " " << strongest_hz << " " << w;
+      EXPECT_NEAR(left.synchronous, cut, 0.015 * cut) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.family, energy(family), 0.08 * energy(family)) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.frequency_hz, strongest_hz, w == 0 ? 0.3 : 0.6) << rotation_hz;
     }

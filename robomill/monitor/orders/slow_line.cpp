@@ -25,9 +25,7 @@ void SlowLine::step(std::span<const float> power, const Spectrum& like, double r
   const auto at_order = [&](double k) {
     const double place = k * orders;
     if (k < 1.0 || place >= static_cast<double>(used - 1)) return 0.0;
-    const auto line = static_cast<std::size_t>(place);
-    const double part = place - static_cast<double>(line);
-    return (1.0 - part) * static_cast<double>(power[line]) + part * static_cast<double>(power[line + 1]);
+    return static_cast<double>(like.power_at(power, place));
   };
   std::size_t strongest = 0;
   for (std::size_t i = 0; i < used; ++i) {

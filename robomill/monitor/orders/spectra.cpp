@@ -1,7 +1,6 @@
 #include "robomill/monitor/orders/spectra.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -34,8 +33,19 @@ std::vector<float> low_pass(std::size_t factor) {
   return out;
 }
 
+/// The least even 2^a 3^b 5^c, which transform fastest, that is n or more.
+std::size_t smooth(std::size_t n) {
+  for (n += n % 2;; n += 2) {
+    std::size_t rest = n;
+    for (const std::size_t prime : {2, 3, 5}) {
+      while (rest % prime == 0) rest /= prime;
+    }
+    if (rest == 1) return n;
+  }
+}
+
 template <std::size_t n>
-void interpolate(const float* power, const float* places, float order, float* out) {
+void interpolate(const float* power, float dip, const float* places, float order, float* out) {
   float part[n], here[n], next[n];
   std::int32_t line[n];
   for (std::size_t i = 0; i < n; ++i) {
@@ -47,7 +57,10 @@ void interpolate(const float* power, const float* places, float order, float* ou
     here[i] = power[line[i]];
     next[i] = power[line[i] + 1];
   }
-  for (std::size_t i = 0; i < n; ++i) out[i] = here[i] + part[i] * (next[i] - here[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float lift = 1.0F + 4.0F * dip * part[i] * (1.0F - part[i]);
+    out[i] = lift * lift * (here[i] + part[i] * (next[i] - here[i]));
+  }
 }
 
 }  // namespace
@@ -81,14 +94,14 @@ WindowEnergy energy_of(std::span<const float> power, const Spectrum& like, doubl
   return out;
 }
 
-std::size_t at_multiple(std::span<const float> power, std::span<const float> places, int k, std::size_t last,
+std::size_t at_multiple(std::span<const float> power, float dip, std::span<const float> places, int k, std::size_t last,
                         std::span<float> out) noexcept {
   const auto order = static_cast<float>(k);
   const auto end = std::ranges::lower_bound(places, static_cast<float>(last) / order);
   const auto count = static_cast<std::size_t>(end - places.begin());
   std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) interpolate<lanes>(power.data(), places.data() + i, order, out.data() + i);
-  for (; i < count; ++i) interpolate<1>(power.data(), places.data() + i, order, out.data() + i);
+  for (; i + lanes <= count; i += lanes) interpolate<lanes>(power.data(), dip, places.data() + i, order, out.data() + i);
+  for (; i < count; ++i) interpolate<1>(power.data(), dip, places.data() + i, order, out.data() + i);
   return count;
 }
 
@@ -102,7 +115,7 @@ Spectra::Spectra(double sample_rate_hz, std::size_t channels, std::span<const do
   past_.resize(2 * low_pass_.size() * channels);
   for (const double seconds : windows_s) {
     const std::size_t length = static_cast<std::size_t>(seconds * rate_hz_) / 2 * 2 + 1;
-    const std::size_t padded = std::bit_ceil(2 * length);
+    const std::size_t padded = 2 * smooth(length);
     Window& window = windows_.emplace_back(
         Window{length, padded, kissfft<float>(padded / 2, false), std::vector<float>(length), {}});
     double sum = 0.0;
@@ -116,6 +129,9 @@ Spectra::Spectra(double sample_rate_hz, std::size_t channels, std::span<const do
     for (Spectrum& spectrum : window.spectra) {
       spectrum.seconds = static_cast<double>(length + 1) / rate_hz_;
       spectrum.step_hz = rate_hz_ / static_cast<double>(padded);
+      const double half_way = 0.5 * spectrum.seconds * spectrum.step_hz;
+      spectrum.dip =
+          static_cast<float>(pi * half_way * (1.0 - half_way * half_way) / std::sin(pi * half_way) - 1.0);
       spectrum.line.resize(padded / 2);
     }
   }
@@ -128,9 +144,11 @@ void Spectra::reset() noexcept {
   std::ranges::fill(past_, 0.0F);
   std::ranges::fill(ring_, 0.0F);
   at_ = past_at_ = phase_ = pushed_ = 0;
+  for (Window& window : windows_) window.current = false;
 }
 
 void Spectra::push(std::span<const float> samples, std::size_t frames) noexcept {
+  for (Window& window : windows_) window.current = false;
   const std::size_t taps = low_pass_.size();
   for (std::size_t i = 0; i < frames; ++i) {
     if (taps > 0) {
@@ -193,6 +211,8 @@ void Spectra::course(std::size_t window_index, std::size_t channel, double frequ
 
 void Spectra::transform(std::size_t window_index) noexcept {
   Window& window = windows_[window_index];
+  if (window.current) return;
+  window.current = true;
   const std::size_t half = window.length / 2;
   for (std::size_t c = 0; c < channels_; ++c) {
     const float* last = ring_.data() + 2 * c * size_ + at_ + size_ - window.length;

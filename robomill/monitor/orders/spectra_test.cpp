@@ -18,6 +18,7 @@ namespace spectra_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
+using monitor::testing::power_of;
 using monitor::testing::spectra_of;
 using monitor::testing::sum_of;
 using monitor::testing::Tone;
@@ -77,6 +78,28 @@ TEST(HannKernel, HasItsZerosHalvesAndEnergy) {
   double integral = 0.0;
   for (int i = -20000; i <= 20000; ++i) integral += std::pow(hann_kernel(i / 200.0), 2) / 200.0;
   EXPECT_NEAR(integral, 1.5, 1e-9);
+}
+
+// Wherever it stands between two lines, in windows of any length: the lines of some are 1/(2T) apart.
+TEST(Spectra, ShowTheAmplitudeOfASineBetweenLines) {
+  Random random(9);
+  for (int run = 0; run < 60; ++run) {
+    const std::array<double, 1> window_s = {random.uniform(0.1, 0.5)};
+    const Tone tone{random.uniform(300.0, 4500.0), random.uniform(0.1, 10.0), random.uniform(0.0, turn)};
+    Spectra spectra(rate_hz, 1, window_s);
+    const std::vector<float> x = sum_of(std::array{tone}, rate_hz, 0.6);
+    spectra.push(x, x.size());
+    spectra.transform(0);
+    const Spectrum& own = spectra.spectrum(0, 0);
+    EXPECT_NEAR(std::abs(std::complex<double>(own.at(tone.hz))), tone.amplitude, 3e-3 * tone.amplitude);
+    const std::vector<float> power = power_of(own);
+    const double place = tone.hz / own.step_hz;
+    EXPECT_NEAR(own.power_at(power, place), tone.amplitude * tone.amplitude, 5e-3 * tone.amplitude * tone.amplitude);
+    std::array<float, 1> at_third = {};
+    const std::array third = {static_cast<float>(place / 3.0)};
+    ASSERT_EQ(at_multiple(power, own.dip, third, 3, power.size() - 1, at_third), 1U);
+    EXPECT_NEAR(at_third[0], tone.amplitude * tone.amplitude, 5e-3 * tone.amplitude * tone.amplitude);
+  }
 }
 
 // At every line near it, not only at its own: X = A exp(iφ) h((ν - f) T), φ the phase in the window's middle.

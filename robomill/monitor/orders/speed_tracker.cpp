@@ -82,7 +82,7 @@ void SpeedTracker::gather(std::span<const float> power, std::span<const float> f
     const bool of_teeth = setup_.teeth > 0 && k % setup_.teeth == 0;
     const float each = !of_teeth ? 1.0F : k == setup_.teeth ? first_teeth_weight : teeth_weight;
     weights += each;
-    at_multiple(worth_, place_, k, lines - 1, here_);
+    at_multiple(worth_, 0.0F, place_, k, lines - 1, here_);
     for (std::size_t i = 0; i < size; ++i) sum_[i] += each * here_[i];
   }
   for (std::size_t i = 0; i < size; ++i) {
