@@ -17,6 +17,8 @@ constexpr double of_entry = 0.5;      // of that growth, at tooth passing
 constexpr double least_anchor = 0.2;  // of all energy, in the multiples of rotation
 constexpr double least_comb = 0.12;   // SpeedTracker::seen: the lines are there, however little energy they hold
 constexpr double keeps = 0.5, follows = 0.1;  // of them, where they held that before; a hop
+// A comb that was found: in air one of the machine may be, which the cut hides.
+constexpr double least_of_found = 0.01;  // of all energy
 constexpr double learnt_at = 0.03;            // of the speed
 constexpr double enters_above = 2.0;          // … to so much of the quietest
 
@@ -76,6 +78,7 @@ void CutState::step(const Measured& now, bool chatter) noexcept {
 
 double CutState::anchored() const noexcept {
   const double of_whole = synchronous_share() / least_anchor;
+  if (!now_.given && synchronous_share() < least_of_found) return of_whole;
   const double of_lines = now_.comb / least_comb;
   if (usual_synchronous_ <= 0.0) return std::max(of_whole, of_lines);
   const bool both = now_.synchronous + now_.family >= thresholds::explains * now_.whole || of_lines >= 1.0;

@@ -18,6 +18,7 @@ class CutState {
     double short_synchronous = 0.0;  ///< of the multiples of rotation, in the shorter window
     double rotation_hz = 0.0;        ///< 0: not tracked
     double comb = 0.0;               ///< SpeedTracker::seen
+    bool given = false;              ///< the speed was
     bool full = false;               ///< 0.3 s have been seen
   };
   /// A hop. @param chatter  no entry begins

@@ -95,6 +95,24 @@ TEST(CutState, TheOrdersAnchorTheSpeedInChatterToo) {
   EXPECT_LT(cut.anchored(), 1.0);
 }
 
+// A comb that was found may be the machine's in air. The cut hides it: in chatter the orders of a cut hold more.
+TEST(CutState, AFoundCombThatTheCutHidesIsNotItsOwn) {
+  for (const bool given : {false, true}) {
+    CutState cut(hop_s);
+    pass(cut, 1.0, air());
+    CutState::Measured idle = cutting(10.0);
+    idle.given = given;
+    pass(cut, 0.2, idle);
+    CutState::Measured beside = cutting(5000.0);
+    beside.synchronous = beside.teeth = 9.0;
+    beside.family = 4000.0;
+    beside.comb = 0.5;
+    beside.given = given;
+    pass(cut, 0.5, beside);
+    EXPECT_EQ(cut.anchored() >= 1.0, given);
+  }
+}
+
 TEST(CutState, LeavesWhereTheEnergyFalls) {
   CutState cut(hop_s);
   pass(cut, 2.0, cutting());

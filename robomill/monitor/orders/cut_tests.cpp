@@ -164,7 +164,7 @@ void CutTests::measure(std::uint64_t bad_channels) noexcept {
   const bool known = follows();
   if (!given_ || !explained()) {
     search_.observe(usual.power, usual.like());
-    if (!given_ && !chatter_ && !known && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
+    if (!given_ && !known && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
   }
   choose_windows();
   found_far_ = found_near_ = {};
@@ -189,6 +189,7 @@ void CutTests::measure(std::uint64_t bad_channels) noexcept {
              .short_synchronous = found_near_.synchronous,
              .rotation_hz = armed_ ? speed_.rotation_hz() : 0.0,
              .comb = armed_ ? speed_.seen() : 0.0,
+             .given = given_,
              .full = fast_.past_s() >= usual.seconds - 1e-9},
             chatter_);
 }
