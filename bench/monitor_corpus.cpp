@@ -54,14 +54,14 @@ void print(const std::string& detector, const Scores& scores) {
   fmt::print(
       "\n{}\n\n| class | cuts | found (95 %) | false alarms | cuts with false alarms (95 %) | delay, ms: median / 95 % "
       "| "
-      "frequency, Hz | recovery, ms |\n|---|---|---|---|---|---|---|---|\n",
+      "frequency, Hz | recovery, ms | blind, % of the time |\n|---|---|---|---|---|---|---|---|---|\n",
       detector);
   for (const auto& [group, of] : scores) {
     const Summary s = summarise(of);
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", group, s.cuts, rate(s.found, s.chatter), s.false_alarms,
-               rate(s.with_false_alarms, s.cuts), two(s.delay_median_s, s.delay_95_s, 1e3, 0),
-               two(s.frequency_median_hz, s.frequency_95_hz, 1.0, 2),
-               two(s.recovery_median_s, s.recovery_95_s, 1e3, 0));
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {:.0f} |\n", group, s.cuts, rate(s.found, s.chatter),
+               s.false_alarms, rate(s.with_false_alarms, s.cuts), two(s.delay_median_s, s.delay_95_s, 1e3, 0),
+               two(s.frequency_median_hz, s.frequency_95_hz, 1.0, 2), two(s.recovery_median_s, s.recovery_95_s, 1e3, 0),
+               100.0 * s.blind_share);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -72,14 +73,19 @@ int main(int argc, char** argv) {
   monitor::ChatterMonitor monitor({.sample_rate_hz = corpus_rate_hz, .channels = 2, .teeth = teeth});
   Reconstruction reconstruction;
   int alarms = 0;
+  std::uint64_t hop = 0;
+  std::uint64_t blind = 0;
   bool chatter = false;
   double next_report_s = 0.0;
   const std::clock_t begun = std::clock();
   fmt::print(
-      "| simulated, h | resident, MiB | reconstruction error | alarms | processor, s |\n|---|---|---|---|---|\n");
+      "| simulated, h | resident, MiB | reconstruction error | alarms | blind, % | processor, s "
+      "|\n|---|---|---|---|---|---|\n");
   const auto report = [&] {
-    fmt::print("| {:.2f} | {:.1f} | {:.1e} | {} | {:.0f} |\n", stream.seconds() / 3600.0, resident_mib(),
-               reconstruction.worst(), alarms, static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
+    fmt::print("| {:.2f} | {:.1f} | {:.1e} | {} | {:.2f} | {:.0f} |\n", stream.seconds() / 3600.0, resident_mib(),
+               reconstruction.worst(), alarms,
+               hop > 0 ? 100.0 * static_cast<double>(blind) / static_cast<double>(hop) : 0.0,
+               static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
     std::fflush(stdout);
   };
   for (std::span<const float> samples = stream.next(); !samples.empty(); samples = stream.next()) {
@@ -87,7 +93,10 @@ int main(int argc, char** argv) {
     while (!samples.empty()) {
       const std::size_t take = std::min(samples.size(), 2 * monitor.frames_to_next_decision());
       for (std::size_t i = 0; i < take; i += 2) reconstruction.push(static_cast<double>(samples[i]));
-      const bool now = monitor.push(samples.first(take)).state == monitor::State::chatter;
+      const monitor::Decision decision = monitor.push(samples.first(take));
+      if (decision.hop != hop) blind += decision.state == monitor::State::blind ? 1 : 0;
+      hop = decision.hop;
+      const bool now = decision.state == monitor::State::chatter;
       alarms += now && !chatter ? 1 : 0;
       chatter = now;
       samples = samples.subspan(take);

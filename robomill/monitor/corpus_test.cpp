@@ -148,7 +148,7 @@ TEST(Score, CountsWhatItSays) {
   const std::vector<DetectorDecision> decisions = {
       {.time_s = 0.5, .chatter = true, .stable = false, .frequency_hz = 100.0},
       {.time_s = 0.6},
-      {.time_s = 0.97, .chatter = false, .stable = false},
+      {.time_s = 0.97, .chatter = false, .stable = false, .blind = true},
       {.time_s = 1.04, .chatter = true, .stable = false, .frequency_hz = 602.0},
       {.time_s = 2.05, .chatter = true, .stable = false},
       {.time_s = 2.2},
@@ -168,6 +168,7 @@ TEST(Score, CountsWhatItSays) {
   EXPECT_EQ(sum.cuts, 3);
   EXPECT_EQ(sum.chatter, 2);
   EXPECT_EQ(sum.found, 1);
+  EXPECT_DOUBLE_EQ(sum.blind_share, 1.0 / 7.0);
   EXPECT_EQ(sum.false_alarms, 5);
   EXPECT_NEAR(sum.delay_95_s, 0.04, 1e-12);
 }

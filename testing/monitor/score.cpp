@@ -107,6 +107,8 @@ CutScore score(const RecordedCut& cut, std::span<const DetectorDecision> decisio
       out.delay_s = h.time_s - truth.t10_s;
     }
     before = h.chatter;
+    ++out.decisions;
+    out.blind += h.blind ? 1 : 0;
     const auto frame =
         std::min(static_cast<std::size_t>(h.time_s * cut.sample_rate_hz), truth.amplitude_m_per_s2.size() - 1);
     if (h.chatter && in_chatter && h.frequency_hz > 0.0 &&
@@ -135,6 +137,8 @@ RateInterval rate_interval(int events, int trials) {
 Summary summarise(std::span<const CutScore> scores) {
   Summary out;
   std::vector<double> delay, frequency, recovery;
+  int decisions = 0;
+  int blind = 0;
   for (const CutScore& s : scores) {
     ++out.cuts;
     out.chatter += s.chatter ? 1 : 0;
@@ -144,7 +148,10 @@ Summary summarise(std::span<const CutScore> scores) {
     delay.push_back(s.delay_s);
     if (s.found) frequency.push_back(s.frequency_error_hz);
     recovery.push_back(s.recovery_s);
+    decisions += s.decisions;
+    blind += s.blind;
   }
+  out.blind_share = decisions > 0 ? static_cast<double>(blind) / decisions : 0.0;
   out.delay_median_s = quantile(delay, 0.5);
   out.delay_95_s = quantile(delay, 0.95);
   out.frequency_median_hz = quantile(frequency, 0.5);
@@ -185,6 +192,7 @@ std::vector<DetectorDecision> decisions_with(const MonitorOptions& options, cons
     out.push_back({.time_s = d.time_s,
                    .chatter = d.state == State::chatter,
                    .stable = d.state == State::stable,
+                   .blind = d.state == State::blind,
                    .frequency_hz = d.chatter_frequency_hz});
   }
   return out;

@@ -13,7 +13,7 @@ namespace robomill::monitor::testing {
 /// One decision of any detector.
 struct DetectorDecision {
   double time_s = 0.0;  ///< of the last sample it used
-  bool chatter = false, stable = true;
+  bool chatter = false, stable = true, blind = false;
   double frequency_hz = 0.0;  ///< 0: none
 };
 using Detector = std::function<std::vector<DetectorDecision>(const RecordedCut&)>;
@@ -32,6 +32,7 @@ struct CutScore {
   double frequency_error_hz = 0.0, strongest_error_hz = 0.0;
   /// From truth.end_s to the first report of stable; NaN where chatter does not end 0.5 s before the recording.
   double recovery_s = 0.0;
+  int decisions = 0, blind = 0;  ///< of all decisions, those in which it was blind
 };
 [[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const DetectorDecision> decisions);
 
@@ -42,6 +43,7 @@ struct Summary {
   double delay_median_s = 0.0, delay_95_s = 0.0;
   double frequency_median_hz = 0.0, frequency_95_hz = 0.0;
   double recovery_median_s = 0.0, recovery_95_s = 0.0;
+  double blind_share = 0.0;  ///< of all decisions
 };
 [[nodiscard]] Summary summarise(std::span<const CutScore> scores);
 /// Where a rate lies with a confidence of 95 % [ClopperPearson1934]: of the rates at which so many events in so many

@@ -19,8 +19,8 @@ constexpr double least_comb = 0.12;   // SpeedTracker::seen: the lines are there
 constexpr double keeps = 0.5, follows = 0.1;  // of them, where they held that before; a hop
 // A comb that was found: in air one of the machine may be, which the cut hides.
 constexpr double least_of_found = 0.01;  // of all energy
-constexpr double learnt_at = 0.03;            // of the speed
-constexpr double enters_above = 2.0;          // … to so much of the quietest
+constexpr double learnt_at = 0.03;       // of the speed
+constexpr double enters_above = 2.0;     // … to so much of the quietest
 
 }  // namespace
 

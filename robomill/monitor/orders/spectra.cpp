@@ -100,7 +100,8 @@ std::size_t at_multiple(std::span<const float> power, float dip, std::span<const
   const auto end = std::ranges::lower_bound(places, static_cast<float>(last) / order);
   const auto count = static_cast<std::size_t>(end - places.begin());
   std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) interpolate<lanes>(power.data(), dip, places.data() + i, order, out.data() + i);
+  for (; i + lanes <= count; i += lanes)
+    interpolate<lanes>(power.data(), dip, places.data() + i, order, out.data() + i);
   for (; i < count; ++i) interpolate<1>(power.data(), dip, places.data() + i, order, out.data() + i);
   return count;
 }
@@ -130,8 +131,7 @@ Spectra::Spectra(double sample_rate_hz, std::size_t channels, std::span<const do
       spectrum.seconds = static_cast<double>(length + 1) / rate_hz_;
       spectrum.step_hz = rate_hz_ / static_cast<double>(padded);
       const double half_way = 0.5 * spectrum.seconds * spectrum.step_hz;
-      spectrum.dip =
-          static_cast<float>(pi * half_way * (1.0 - half_way * half_way) / std::sin(pi * half_way) - 1.0);
+      spectrum.dip = static_cast<float>(pi * half_way * (1.0 - half_way * half_way) / std::sin(pi * half_way) - 1.0);
       spectrum.line.resize(padded / 2);
     }
   }

@@ -34,8 +34,8 @@ struct Spectrum {
   [[nodiscard]] std::size_t first_line() const noexcept {
     return static_cast<std::size_t>(2.5 / (seconds * step_hz)) + 1;
   }
-  /// The amplitude of a sine at this part of the way between two lines, to that by a straight line: 1 + 4 dip p (1 - p),
-  /// within 0.2 %.
+  /// The amplitude of a sine at this part of the way between two lines, to that by a straight line: 1 + 4 dip p (1 -
+  /// p), within 0.2 %.
   [[nodiscard]] float lift(float part) const noexcept { return 1.0F + 4.0F * dip * part * (1.0F - part); }
   /// X between the lines.
   [[nodiscard]] std::complex<float> at(double frequency_hz) const noexcept {
