@@ -202,6 +202,12 @@ void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& option
                                    .max_damping_ratio = options.pso_max_damping_ratio,
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
+                                   .inertia_start = options.pso_inertia_start,
+                                   .inertia_end = options.pso_inertia_end,
+                                   .inertia_iterations = options.pso_inertia_iterations,
+                                   .cognitive = options.pso_cognitive,
+                                   .social = options.pso_social,
+                                   .velocity_fraction = options.pso_velocity_fraction,
                                    .seed = options.seed},
                                   progress);
   result.weighting = Weighting::relative;
@@ -280,6 +286,13 @@ void FitOptions::validate() const {
     throw InvalidInput("pso_max_damping_ratio", pso_max_damping_ratio, "", "must be above 0 and at most 1",
                        "It is a ratio, not a percentage");
   }
+  require_between("pso_inertia_start", pso_inertia_start, 0.0, 1.0, "must lie between 0 and 1");
+  require_between("pso_inertia_end", pso_inertia_end, 0.0, pso_inertia_start,
+                  "must lie between 0 and pso_inertia_start");
+  require_between("pso_inertia_iterations", pso_inertia_iterations, 1, 1e9, "must be at least 1");
+  require_non_negative("pso_cognitive", pso_cognitive, "");
+  require_non_negative("pso_social", pso_social, "");
+  require_between("pso_velocity_fraction", pso_velocity_fraction, 0.0, 1.0, "must lie between 0 (no bound) and 1");
 }
 
 namespace {

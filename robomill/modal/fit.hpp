@@ -57,6 +57,13 @@ struct FitOptions {
   int pso_max_iterations = 8000;          ///< >= 1
   double pso_frequency_half_width = 0.1;  ///< a mode stays within (1 ± this) of its peak, in (0, 1)
   double pso_max_damping_ratio = 0.1;     ///< no mode of the swarm above it, in (0, 1]
+  /// As of PsoOptions without "pso_".
+  double pso_inertia_start = 0.9;      ///< in [0, 1]
+  double pso_inertia_end = 0.4;        ///< in [0, pso_inertia_start]
+  int pso_inertia_iterations = 300;    ///< >= 1
+  double pso_cognitive = 2.0;          ///< >= 0
+  double pso_social = 2.0;             ///< >= 0
+  double pso_velocity_fraction = 0.1;  ///< in [0, 1], 0: no bound
 
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;

@@ -254,6 +254,12 @@ TEST(FitInput, RejectsBadOptions) {
       [](FitOptions& o) { o.pso_max_iterations = 0; },
       [](FitOptions& o) { o.pso_frequency_half_width = 1.0; },
       [](FitOptions& o) { o.pso_max_damping_ratio = 10.0; },
+      [](FitOptions& o) { o.pso_inertia_start = 1.1; },
+      [](FitOptions& o) { o.pso_inertia_end = 0.95; },
+      [](FitOptions& o) { o.pso_inertia_iterations = 0; },
+      [](FitOptions& o) { o.pso_cognitive = -1.0; },
+      [](FitOptions& o) { o.pso_social = nan; },
+      [](FitOptions& o) { o.pso_velocity_fraction = 1.1; },
   };
   for (std::size_t i = 0; i < faults.size(); ++i) {
     FitOptions options;

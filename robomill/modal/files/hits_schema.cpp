@@ -229,7 +229,23 @@ const Schema<FitOptions>& fit_options_table() {
            .below(1.0),
        key("pso_max_damping_ratio", &FitOptions::pso_max_damping_ratio, "of the swarm: no mode above it")
            .above(0.0)
-           .at_most(1.0, not_percent)});
+           .at_most(1.0, not_percent),
+       key("pso_inertia_start", &FitOptions::pso_inertia_start, "of the swarm, at its first move")
+           .at_least(0.0)
+           .at_most(1.0),
+       key("pso_inertia_end", &FitOptions::pso_inertia_end, "to which it falls, at most pso_inertia_start")
+           .at_least(0.0)
+           .at_most(1.0),
+       key("pso_inertia_iterations", &FitOptions::pso_inertia_iterations,
+           "over which it falls, linearly; only then the swarm may stop as converged")
+           .at_least(1.0)
+           .at_most(1e9),
+       key("pso_cognitive", &FitOptions::pso_cognitive, "c1, pull of a particle's own best").at_least(0.0),
+       key("pso_social", &FitOptions::pso_social, "c2, pull of the swarm's best").at_least(0.0),
+       key("pso_velocity_fraction", &FitOptions::pso_velocity_fraction,
+           "no velocity above this share of its unknown's range; 0: no bound")
+           .at_least(0.0)
+           .at_most(1.0)});
   return table;
 }
 

@@ -38,6 +38,7 @@ constexpr double worthwhile = 0.8;    // … or where it does not bring the misf
 constexpr int lines_of_a_peak = 15;
 constexpr double half_widths_of_a_peak = 3.0;
 constexpr std::size_t particles_per_block = 4;
+constexpr double first_velocity_fraction = 0.1;  // of a range, where the velocity has no bound
 
 /// One excitation's search: what is fitted, and what a particle's numbers mean. A mode has frequency [Hz], damping
 /// ratio, and real and imaginary parts of left and of right's components in units of vector_scale.
@@ -158,14 +159,17 @@ pagmo::population FallingInertiaSwarm::evolve(pagmo::population population) cons
   const Positions& upper = upper_bound;
   Swarm swarm;
   swarm.size = lower.size();
+  const bool free = options_->velocity_fraction == 0.0;
+  Positions first_velocity;
   for (std::size_t d = 0; d < swarm.size; ++d) {
-    swarm.max_velocity.push_back(options_->velocity_fraction * (upper[d] - lower[d]));
+    first_velocity.push_back((free ? first_velocity_fraction : options_->velocity_fraction) * (upper[d] - lower[d]));
+    swarm.max_velocity.push_back(free ? std::numeric_limits<double>::infinity() : first_velocity[d]);
   }
   for (std::size_t particle = 0; particle < population.size(); ++particle) {
     const Positions& x = population.get_x()[particle];
     swarm.position.insert(swarm.position.end(), x.begin(), x.end());
     swarm.own_misfit.push_back(population.get_f()[particle][0]);
-    for (const double limit : swarm.max_velocity) {
+    for (const double limit : first_velocity) {
       swarm.velocity.push_back((*streams_)[particle].uniform(-limit, limit));
     }
   }
@@ -451,9 +455,7 @@ void PsoOptions::validate() const {
   require_between("inertia_end", inertia_end, 0.0, inertia_start);
   require_non_negative("cognitive", cognitive, "");
   require_non_negative("social", social, "");
-  if (!(velocity_fraction > 0.0 && velocity_fraction <= 1.0)) {
-    throw InvalidInput("velocity_fraction", velocity_fraction, "", "must be above 0 and at most 1");
-  }
+  require_between("velocity_fraction", velocity_fraction, 0.0, 1.0);
   require_at_least("stall_iterations", stall_iterations, 1);
   require_non_negative("stall_tolerance", stall_tolerance, "");
 }

@@ -36,8 +36,9 @@ struct PsoOptions {
   int inertia_iterations = 300;
   double cognitive = 2.0;  ///< c1, pull of a particle's own best, >= 0
   double social = 2.0;     ///< c2, pull of the swarm's best, >= 0
-  /// No velocity component exceeds this share of its unknown's range, in (0, 1]; not stated. A free swarm diverges with
-  /// the published inertia and pulls.
+  /// No velocity component exceeds this share of its unknown's range, in [0, 1]; not stated. 0: no bound, and the first
+  /// velocities are those of 0.1. With the published inertia and pulls a free swarm's steps grow until it lies at its
+  /// bounds.
   double velocity_fraction = 0.1;
   /// Converged when, the inertia having come down, the best misfit fell by no more than stall_tolerance of itself over
   /// stall_iterations; not stated.
@@ -81,7 +82,8 @@ struct PsoResult {
 /// that hit, so it is left out: eight for two responses.) The swarm minimises the mean over its lines and the FRFs of
 /// |H_fit - H| / |H|:
 ///   v = w v + c1 r1 (own best - x) + c2 r2 (swarm's best - x), held to velocity_fraction of each range;  x += v,
-/// with r1, r2 uniform in [0, 1) for every component; a particle that meets a bound stops there in that component.
+/// with r1, r2 uniform in [0, 1) for every component (velocity_fraction 0: v is not held); a particle that meets a
+/// bound stops there in that component.
 ///
 /// Each excitation's modes are a set of their own, as in the source: in the model, left is zero at the other
 /// excitations, right is zero at responses not measured with it, and a physical mode that both hits excite stands there
