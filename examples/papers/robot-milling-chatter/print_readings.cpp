@@ -24,7 +24,9 @@ using namespace robomill;
 using examples::CutReading;
 using examples::ModeTable;
 
-std::string number_or_none(double value) { return std::isfinite(value) ? fmt::format("{:.3f}", value) : "none"; }
+std::string number_or_none(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3f}", value) : "none";
+}
 
 std::string words_of(const CutReading& cut) {
   return fmt::format("{},{:.0f},{}", cut.teeth, cut.feed_direction_rad * 180.0 / std::numbers::pi,
@@ -95,7 +97,8 @@ void write_cuts(const std::filesystem::path& folder, const CutReading& chosen) {
     for (const double depth_mm : examples::cut_depths_mm[k]) {
       std::string_view agrees;
       for (const examples::StatedCut& cut : examples::stated_cuts()) {
-        if (cut.speed == k && cut.depth_mm == depth_mm) agrees = examples::agrees(cut, found.limit_mm[k]) ? "yes" : "no";
+        if (cut.speed == k && cut.depth_mm == depth_mm)
+          agrees = examples::agrees(cut, found.limit_mm[k]) ? "yes" : "no";
       }
       text += fmt::format("{:.0f},{},{:.4f},{:.4f},{},{},{},{}\n", examples::cut_speeds_rpm[k], depth_mm, rotation_hz,
                           chosen.teeth * rotation_hz, number_or_none(found.limit_mm[k]),

@@ -86,8 +86,7 @@ stability::LobesProblem problem_of(const Reading& reading) {
   for (std::size_t k = 0; k < double_readings().size(); ++k) {
     const DoubleReading& twice = double_readings()[k];
     modal::Mode& mode = problem.dynamics.modes[twice.mode];
-    (twice.damping ? mode.damping_ratio : mode.frequency_hz) =
-        twice.values[static_cast<std::size_t>(reading.table[k])];
+    (twice.damping ? mode.damping_ratio : mode.frequency_hz) = twice.values[static_cast<std::size_t>(reading.table[k])];
   }
   if (reading.cut.y_to_the_right) {
     for (modal::Mode& mode : problem.dynamics.modes) {

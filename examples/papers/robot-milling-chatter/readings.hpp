@@ -13,10 +13,10 @@ namespace robomill::examples {
 
 /// A value of table 4-4 whose cell is shared by two lines of the text, which read it differently.
 struct DoubleReading {
-  const char* name;                 ///< "mode_2_hz": a column of readings.csv
-  std::size_t mode;                 ///< from 0
-  bool damping;                     ///< or the frequency
-  std::array<double, 2> values;     ///< first and second line [1 or Hz]
+  const char* name;              ///< "mode_2_hz": a column of readings.csv
+  std::size_t mode;              ///< from 0
+  bool damping;                  ///< or the frequency
+  std::array<double, 2> values;  ///< first and second line [1 or Hz]
 };
 [[nodiscard]] const std::array<DoubleReading, 5>& double_readings();
 

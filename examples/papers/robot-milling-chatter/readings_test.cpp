@@ -39,6 +39,15 @@ TEST(Readings, HaveTheModesOfTheDataAmongThem) {
   EXPECT_EQ(std::ranges::count(mode_tables(), as_data), 1);
 }
 
+// Whence the bound of 10 % in place of the printed 100 %.
+TEST(Readings, HaveFourDampingRatiosOfTenPercentAndNoneAbove) {
+  for (const ModeTable& table : mode_tables()) {
+    const std::vector<modal::Mode> modes = problem_of({.cut = {}, .table = table}).dynamics.modes;
+    EXPECT_EQ(std::ranges::count(modes, 0.1, &modal::Mode::damping_ratio), 4);
+    EXPECT_EQ(std::ranges::max(modes, {}, &modal::Mode::damping_ratio).damping_ratio, 0.1);
+  }
+}
+
 // The table numbers its modes by frequency, and so does the fit of each direction: that decides mode 4 alone.
 TEST(Readings, OfMode4AreDecidedByTheOrderOfTheModes) {
   for (const ModeTable& table : mode_tables()) {
@@ -96,8 +105,10 @@ TEST(Readings, AreDecidedForTwoTeethAlongY) {
 
 // Where the means lie within half a cut, the correlation decides.
 TEST(Readings, WithinHalfACutAreDecidedByTheDepths) {
-  EXPECT_EQ(chosen({{.cut = {}, .agreed = 3.0, .correlation = 0.1}, {.cut = {}, .agreed = 2.6, .correlation = 0.9}}), 1U);
-  EXPECT_EQ(chosen({{.cut = {}, .agreed = 3.0, .correlation = 0.1}, {.cut = {}, .agreed = 2.4, .correlation = 0.9}}), 0U);
+  EXPECT_EQ(chosen({{.cut = {}, .agreed = 3.0, .correlation = 0.1}, {.cut = {}, .agreed = 2.6, .correlation = 0.9}}),
+            1U);
+  EXPECT_EQ(chosen({{.cut = {}, .agreed = 3.0, .correlation = 0.1}, {.cut = {}, .agreed = 2.4, .correlation = 0.9}}),
+            0U);
 }
 
 TEST(Readings, AgreeWithACutByItsResult) {
