@@ -148,6 +148,14 @@ void set_values(const detail::JointValues& values, Joint& joint) {
   joint.rotational_damping_n_m_s_per_rad = values[3];
 }
 
+std::string note_of_stall(const JointFitResult& result, const JointFitOptions& options) {
+  return fmt::format(
+      "The search stalled: {} generations lowered the objective of the best of the {} random joints that it began with "
+      "by {:.1g} of itself, {:.6g} m/N. The joint is as good as that one, no better. Another seed, --mutation adaptive "
+      "or --method hybrid may go on.",
+      options.generations, options.population, 1.0 - result.best.back() / result.start, result.start);
+}
+
 void compare(const detail::JointModel& model, const detail::JointValues& values, const Eigen::VectorXcd& measured,
              modal::Frf& found, JointFitResult& result) {
   detail::JointModel::Response response;
@@ -230,15 +238,17 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
                                    : detail::search_by_evolution(model, data, bounded, progress);
   detail::update_deviation(model, search.joint, data);
 
-  result.status = search.converged ? JointFitResult::Status::converged : JointFitResult::Status::not_converged;
+  result.status = search.status;
   result.joint = frame;
   set_values(search.joint, result.joint);
   result.iterations = static_cast<int>(search.best.size());
+  result.start = search.start;
   result.best = std::move(search.best);
   modal::Frf found{.name = frf.name, .receptance = {}};
   compare(model, search.joint, data.measured, found, result);
   result.model = {.frequency_hz = frequency_hz, .frfs = {std::move(found)}};
   result.knowledge = detail::joint_knowledge(model, search.joint, data, bounded, result.notes);
+  if (result.status == JointFitResult::Status::stalled) result.notes.push_back(note_of_stall(result, bounded));
   return result;
 }
 

@@ -71,14 +71,17 @@ struct JointKnowledge {
 struct JointFitResult {
   /// converged: the last steps gained nearly nothing. hybrid: least squares ended with |Δcost| <= 1e-10 · cost or
   /// |Δx| <= 1e-13 · |x|. ga: the last fifth of the generations lowered the objective by <= 1 % of itself.
+  /// stalled: ga alone; all generations together lowered the objective of the best of the random start by no more than
+  /// noise_floor of itself, so that the joint is as good as a random one of the bounds.
   /// not_converged: iterations or generations ran out first; the joint is the best one found.
-  enum class Status { converged, not_converged };
+  enum class Status { converged, not_converged, stalled };
   Status status = Status::not_converged;
   Joint joint;
   double objective_m_per_n = 0.0;  ///< ‖ |H11| - |H11 model| ‖₂ over the lines
   double relative_error = 0.0;     ///< ‖H11 - H11 model‖ / ‖H11‖, complex
   std::array<JointKnowledge, joint_unknowns> knowledge;
   int iterations = 0;  ///< generations and steps together
+  double start = 0.0;  ///< the misfit of the best individual of the random start, as the first of `best`
   /// The misfit after each: of ga the objective [m/N]; of hybrid first the evolution's, the mean over thinned lines of
   /// |H - H model|² / (|H|² + |H model|²), then root mean squares of |H - H model| / σ.
   std::vector<double> best;
@@ -86,6 +89,11 @@ struct JointFitResult {
   std::vector<double> suspect_hz;  ///< lines where holder or tip would create energy, beyond their noise
   std::vector<std::string> notes;
 };
+
+inline constexpr Name<JointFitResult::Status> joint_status_names[] = {
+    {"converged", JointFitResult::Status::converged},
+    {"not converged", JointFitResult::Status::not_converged},
+    {"stalled", JointFitResult::Status::stalled}};
 
 /// Finds the joint with which the assembly's tip moves as measured. Of the assembly's own joint the cross stiffness is
 /// kept, and it must have one point; method and accuracy in README.md.

@@ -120,6 +120,42 @@ TEST(JointFit, AdaptiveMutationReachesTheBestOfTheBounds) {
   }
 }
 
+// A search whose generations never improve on the best of its random start has found nothing, however flat its end.
+TEST(JointFit, GenesThatNeverImproveAreStalled) {
+  using Status = JointFitResult::Status;
+  const modal::FrfSet measured = whole_bar();
+  std::vector<std::uint64_t> stalled;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const JointFitResult result =
+        fit_joint(testing::published_pair(), measured, {.method = JointMethod::ga, .seed = seed});
+    EXPECT_GE(result.start, result.best.front());
+    const bool gained = 1.0 - result.best.back() / result.start > 1e-4;
+    EXPECT_EQ(result.status == Status::stalled, !gained) << seed;
+    if (gained) continue;
+    stalled.push_back(seed);
+    EXPECT_TRUE(result.notes.back().starts_with("The search stalled: 50 generations lowered")) << result.notes.back();
+  }
+  // These two stay at the objective that they begin with, to ten digits.
+  EXPECT_TRUE(std::ranges::count(stalled, 1U) == 1 && std::ranges::count(stalled, 3U) == 1);
+}
+
+// What converges in its last fifth alone is judged against the start where there are no generations before.
+TEST(JointFit, GenesOfOneGenerationAreJudgedAgainstTheirStart) {
+  using Status = JointFitResult::Status;
+  const modal::FrfSet measured = whole_bar();
+  JointFitOptions options{.method = JointMethod::ga, .population = 4, .generations = 1};
+  for (options.seed = 1; options.seed <= 20; ++options.seed) {
+    const JointFitResult result = fit_joint(testing::published_pair(), measured, options);
+    const double gained = 1.0 - result.best.back() / result.start;
+    EXPECT_EQ(result.status, gained > 0.01   ? Status::not_converged
+                             : gained > 1e-4 ? Status::converged
+                                             : Status::stalled)
+        << options.seed;
+  }
+  options.lower = options.upper = {1e8, 1e-9, 1e8, 1e-9};
+  EXPECT_EQ(fit_joint(testing::published_pair(), measured, options).status, Status::converged) << "nothing to find";
+}
+
 // Section 2.2 of the source has stiffnesses to 1e9, section 3, whose result is printed, to 1e8.
 TEST(JointFit, GenesStayInTheBoundsGivenAndUseThem) {
   const JointFitOptions options{.method = JointMethod::ga,

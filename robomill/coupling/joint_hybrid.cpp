@@ -245,7 +245,7 @@ JointData part(const JointData& data, const std::vector<Index>& lines) {
 
 /// The best individuals of an evolution that are apart, best first.
 std::vector<JointValues> evolve(const JointModel& model, const JointData& data, const Bounds& bounds,
-                                std::uint64_t seed, std::vector<double>& best, Progress& progress) {
+                                std::uint64_t seed, JointSearch& search, Progress& progress) {
   const Scale scale = search_scale(model, bounds);
   const Eigen::ArrayXd real = data.measured.real();
   const Eigen::ArrayXd imag = data.measured.imag();
@@ -260,11 +260,12 @@ std::vector<JointValues> evolve(const JointModel& model, const JointData& data, 
     for (std::size_t d = 0; d < joint_unknowns; ++d) x.push_back(random.uniform(lower_bound[d], upper_bound[d]));
     population.push_back(x);
   }
+  search.start = population.champion_f()[0];
   pagmo::de algorithm(1U, differential_weight, crossover_rate, 7U, 0.0, 0.0,
                       static_cast<unsigned>(random.index(std::numeric_limits<unsigned>::max())));
   for (unsigned generation = 0; generation < generations; ++generation) {
     population = algorithm.evolve(population);
-    best.push_back(population.champion_f()[0]);
+    search.best.push_back(population.champion_f()[0]);
     progress.advance();
   }
   std::vector<std::size_t> order(population.size());
@@ -385,7 +386,7 @@ JointSearch search_by_evolution(const JointModel& model, JointData& data, const 
   const JointData thin = part(data, lines);
   progress.start("joint search", generations);
   JointSearch search;
-  const std::vector<JointValues> starts = evolve(thin_model, thin, bounds, options.seed, search.best, progress);
+  const std::vector<JointValues> starts = evolve(thin_model, thin, bounds, options.seed, search, progress);
   Refined best = refine_best(thin_model, thin, starts, bounds, progress);
   for (int pass = 0; pass < 2; ++pass) {
     best = refine(model, data, best.joint, bounds, 100, progress);
@@ -395,7 +396,7 @@ JointSearch search_by_evolution(const JointModel& model, JointData& data, const 
     if (pass == 0) update_deviation(model, best.joint, data);
   }
   search.joint = without_idle_damping(model, data, best.joint, bounds);
-  search.converged = best.converged;
+  search.status = best.converged ? JointFitResult::Status::converged : JointFitResult::Status::not_converged;
   return search;
 }
 

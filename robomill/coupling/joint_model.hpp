@@ -14,8 +14,9 @@ using JointValues = std::array<double, joint_unknowns>;
 /// What a search ends with.
 struct JointSearch {
   JointValues joint{};
+  double start = 0.0;             ///< the least misfit of the random start
   std::vector<double> best = {};  ///< the misfit after each iteration
-  bool converged = false;
+  JointFitResult::Status status = JointFitResult::Status::not_converged;
 };
 
 /// The tip's receptance in one plane as a function of the joint alone. With the tool's beam element (g, t, k), the

@@ -65,13 +65,14 @@ Schema<JointFitResult> of_unknowns(const char* name, const char* meaning, F valu
 }
 
 const Schema<JointFitResult>& convergence_table() {
-  using Status = JointFitResult::Status;
-  static constexpr Name<Status> names[] = {{"converged", Status::converged}, {"not converged", Status::not_converged}};
-  static const Schema<JointFitResult> table("convergence", "of the search",
-                                            {key("status", &JointFitResult::status, names, "how it ended"),
-                                             key("iterations", &JointFitResult::iterations, "generations and steps"),
-                                             key("best", &JointFitResult::best, "the misfit after each").nullable()},
-                                            io::Use::written);
+  static const Schema<JointFitResult> table(
+      "convergence", "of the search",
+      {key("status", &JointFitResult::status, joint_status_names,
+           "how it ended; stalled: ga did not improve on its random start"),
+       key("iterations", &JointFitResult::iterations, "generations and steps"),
+       key("start", &JointFitResult::start, "the misfit of the best of the random start").nullable(),
+       key("best", &JointFitResult::best, "the misfit after each").nullable()},
+      io::Use::written);
   return table;
 }
 
@@ -159,7 +160,9 @@ JointFile read_joint_json(const std::filesystem::path& path) {
   }
   if (root.has("convergence") && root.at("convergence").has("status") &&
       root.at("convergence").at("status").text() != "converged") {
-    out.warnings.push_back(fmt::format("{}: the search for the joint did not converge.", name));
+    const bool stalled = root.at("convergence").at("status").text() == "stalled";
+    out.warnings.push_back(fmt::format("{}: the search for the joint {}.", name,
+                                       stalled ? "stalled at its random start" : "did not converge"));
   }
   return out;
 }

@@ -30,6 +30,7 @@ JointFitResult found() {
   out.knowledge[3] = {.deviation = std::numeric_limits<double>::infinity(),
                       .note = "rotational damping: not identifiable from this FRF"};
   out.iterations = 2;
+  out.start = 0.6;
   out.best = {0.5, 0.01};
   out.suspect_hz = {120.0};
   out.notes = {"a note"};
@@ -50,6 +51,7 @@ TEST(JointJson, HoldsWhatWasFound) {
   EXPECT_EQ(json["visible_up_to"].size(), 2U);
   EXPECT_EQ(json["convergence"]["status"], "converged");
   EXPECT_EQ(json["convergence"]["iterations"], 2);
+  EXPECT_EQ(json["convergence"]["start"], 0.6);
   EXPECT_EQ(json["convergence"]["best"][1], 0.01);
   EXPECT_EQ(json["suspect_hz"][0], 120.0);
   EXPECT_EQ(json["notes"][0], "rotational damping: not identifiable from this FRF");
@@ -130,6 +132,9 @@ TEST(JointJson, WarnsOfWhatTheFrfDidNotShow) {
   EXPECT_NE(warnings(result)[0].find("joint.json: rotational damping is not"), std::string::npos);
   result.status = JointFitResult::Status::not_converged;
   EXPECT_EQ(warnings(result).size(), 2U);
+  result.status = JointFitResult::Status::stalled;
+  ASSERT_EQ(warnings(result).size(), 2U);
+  EXPECT_EQ(warnings(result)[1], "joint.json: the search for the joint stalled at its random start.");
   // Written by hand: the four alone.
   const std::string values = R"({"joint": {"translational_stiffness_n_per_m": 1e7, "translational_damping_n_s_per_m": 0,
                  "rotational_stiffness_n_m_per_rad": 2e4, "rotational_damping_n_m_s_per_rad": 0}})";
@@ -192,7 +197,7 @@ TEST(JointJson, SaysWhatIsWrongWithAFile) {
   EXPECT_NE(test::rejection([&] { static_cast<void>(read_joint_json(folder.at("none.json"))); }).find("none.json"),
             std::string::npos);
   // Cut off anywhere it is read or rejected.
-  for (std::size_t end = 0; end < good.size(); end += 7) {
+  for (std::size_t end = 0; end + 1 < good.size(); end += 7) {
     folder.file("joint.json", good.substr(0, end));
     EXPECT_THROW(static_cast<void>(read_joint_json(folder.at("joint.json"))), InvalidInput) << end;
   }

@@ -146,6 +146,22 @@ double magnitude_misfit(const JointModel& model, const JointValues& joint, const
   return std::sqrt(square);
 }
 
+namespace {
+
+/// Stalled: all generations together brought nothing that an FRF shows; converged: the last fifth of them brought less
+/// than a hundredth.
+JointFitResult::Status end_of(const JointSearch& search, const JointFitOptions& options) {
+  using Status = JointFitResult::Status;
+  if (options.lower == options.upper) return Status::converged;  // nothing was looked for
+  const double last = search.best.back();
+  if (search.start - last <= options.noise_floor * search.start) return Status::stalled;
+  const std::size_t fifth = std::max<std::size_t>(1, search.best.size() / 5);
+  const double before = search.best.size() > fifth ? search.best[search.best.size() - 1 - fifth] : search.start;
+  return before - last <= 0.01 * before ? Status::converged : Status::not_converged;
+}
+
+}  // namespace
+
 JointSearch search_by_genes(const JointModel& model, const Eigen::VectorXcd& measured, const JointFitOptions& options,
                             Progress& progress) {
   const Eigen::ArrayXd magnitude = measured.cwiseAbs().array();
@@ -160,13 +176,11 @@ JointSearch search_by_genes(const JointModel& model, const Eigen::VectorXcd& mea
     population.push_back(genes);
   }
   JointSearch search;
+  search.start = population.champion_f()[0];
   progress.start("genetic algorithm", static_cast<std::size_t>(options.generations));
   const pagmo::algorithm algorithm{Generations(options, random, search.best, progress)};
   std::ranges::copy(algorithm.evolve(population).champion_x(), search.joint.begin());
-  // Converged: the last fifth of the generations brought less than a hundredth.
-  const std::size_t fifth = std::max<std::size_t>(1, search.best.size() / 5);
-  const double before = search.best.size() > fifth ? search.best[search.best.size() - 1 - fifth] : HUGE_VAL;
-  search.converged = before - search.best.back() <= 0.01 * before;
+  search.status = end_of(search, options);
   return search;
 }
 

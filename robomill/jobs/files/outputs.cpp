@@ -176,8 +176,10 @@ std::string shortfall(const ToolsResult& result) {
 }
 
 std::string shortfall(const JointResult& result) {
-  return result.fit.status == coupling::JointFitResult::Status::converged ? ""
-                                                                          : "the joint was not found to convergence";
+  using Status = coupling::JointFitResult::Status;
+  if (result.fit.status == Status::converged) return "";
+  return result.fit.status == Status::stalled ? "the search for the joint stalled at its random start"
+                                              : "the joint was not found to convergence";
 }
 
 std::string shortfall(const SimulateResult& result) {

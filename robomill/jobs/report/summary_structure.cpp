@@ -221,8 +221,8 @@ std::string summary(const JointResult& result) {
     io::append(out, "{:<24} {:.6g}{} {}{}\n", to_string(joint_rows[i].unknown), fit.joint.*joint_rows[i].value, spread,
                joint_rows[i].unit, knowledge.identifiable ? "" : "  not identifiable");
   }
-  io::append(out, "\n‖|H| - |H model|‖ = {:.6g} m/N, relative error {:.4g}, {} iterations\n", fit.objective_m_per_n,
-             fit.relative_error, fit.iterations);
+  io::append(out, "\n‖|H| - |H model|‖ = {:.6g} m/N, relative error {:.4g}, {} iterations: {}\n", fit.objective_m_per_n,
+             fit.relative_error, fit.iterations, name_in(coupling::joint_status_names, fit.status));
   for (const coupling::JointKnowledge& knowledge : fit.knowledge) {
     if (!knowledge.note.empty()) io::append(out, "{}\n", knowledge.note);
   }

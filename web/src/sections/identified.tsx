@@ -113,7 +113,8 @@ export function JointSection({ document }: { document: JointDocument }) {
     <Section id="joint" heading="Joint between tool and holder" lead="Springs and dampers with which the prediction comes nearest to the measured FRFs.">
       <p>
         Predicted with this joint, the FRFs differ from the measured ones by {percent(error, 2)}; both are below.
-        {convergence.status !== 'converged' && <strong> The search did not converge.</strong>}
+        {convergence.status === 'not converged' && <strong> The search did not converge.</strong>}
+        {convergence.status === 'stalled' && <strong> The search stalled: its generations did not improve on its random start.</strong>}
         {suspect.length > 0 && ` At ${suspect.length} ${suspect.length === 1 ? 'line' : 'lines'} the measured holder would create energy.`}
       </p>
       <Table
