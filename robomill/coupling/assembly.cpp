@@ -78,6 +78,25 @@ void Joint::validate() const {
   }
 }
 
+void Accelerometer::validate() const {
+  require_non_negative("mass_kg", mass_kg, "kg");
+  require_non_negative("offset_m", offset_m, "m");
+}
+
+namespace {
+
+void require_free(const Assembly& assembly) {
+  const Holder& holder = assembly.holder;
+  if (!holder.segments.empty() || !holder.receptances.frfs.empty()) {
+    throw InvalidInput("holder.free", "must not be true beside segments or receptances");
+  }
+  if (assembly.joint) {
+    throw InvalidInput("holder.free", "must not be true beside a joint", "A tool that hangs free is joined to nothing");
+  }
+}
+
+}  // namespace
+
 void Assembly::validate() const {
   if (tool.empty()) throw InvalidInput("tool", "has no segment", "At least one, from the tip to the joint");
   detail::validate_segments("tool", tool);
@@ -85,6 +104,12 @@ void Assembly::validate() const {
   if (!holder.receptances.frfs.empty()) {
     if (!holder.segments.empty()) throw InvalidInput("holder", "must have segments or receptances, not both");
     holder.receptances.validate();
+  }
+  if (holder.free) require_free(*this);
+  try {
+    accelerometer.validate();
+  } catch (const InvalidInput& error) {
+    throw within("accelerometer.", error);
   }
   if (!joint) return;
   try {

@@ -57,12 +57,21 @@ struct Joint {
 };
 
 /// What the joint stands on. Of both, one: segments to the wall, or measured receptances at the mouth of the holder.
-/// Neither: a rigid wall.
+/// Neither: a rigid wall, or nothing at all.
 struct Holder {
   std::vector<Segment> segments = {};  ///< from the joint to the wall
   /// xx, x:my, ry:x, ry:my, or these and yy, y:mx, rx:y, rx:mx, or all sixteen; of two reciprocal ones one will do. Of
   /// one plane alone, the other is the same.
   modal::FrfSet receptances = {};
+  bool free = false;  ///< nothing holds the tool: without segments, receptances and joint
+};
+
+/// An accelerometer that was glued to the tip: a point mass on the tool's axis.
+struct Accelerometer {
+  double mass_kg = 0.0;   ///< >= 0; 0: none
+  double offset_m = 0.0;  ///< of its centre of mass, beyond the tip; >= 0
+  /// @throws InvalidInput naming the member
+  ROBOMILL_API void validate() const;
 };
 
 /// A tool in a holder.
@@ -70,6 +79,7 @@ struct Assembly {
   std::vector<Segment> tool;   ///< from the tip to the joint, at least one
   std::optional<Joint> joint;  ///< none: rigid
   Holder holder;
+  Accelerometer accelerometer = {};  ///< moves with the tip, as it did when the FRFs were measured
   /// @throws InvalidInput naming the member, as "tool[2].length_m" (segments from 1)
   ROBOMILL_API void validate() const;
 };
@@ -89,7 +99,8 @@ struct TipResult {
 /// Receptances at the tip, by coupling of the tool (a) through the joint to the holder (b):
 ///   G11 = R11 - R12 (R22a + R22b + Kc⁻¹)⁻¹ R21,
 /// exactly for each beam, in the form of README.md that neither cancels at low nor overflows at high frequencies. A
-/// round tool: yy = xx and xy = yx = 0 unless the holder's receptances say otherwise.
+/// round tool: yy = xx and xy = yx = 0 unless the holder's receptances say otherwise. Of a tool that hangs free it is
+/// R11.
 /// @param frequency_hz  length n, strictly increasing, > 0 [Hz]; with a measured holder lines of its axis
 /// @throws InvalidInput if the assembly is not valid, or a frequency is not > 0, outside the measured holder's range or
 ///     none of its lines (naming both steps), or an undamped assembly resonates at it

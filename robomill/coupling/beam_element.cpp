@@ -124,4 +124,23 @@ std::vector<BeamElement> beam_elements(const std::vector<Segment>& segments, con
   return out;
 }
 
+std::vector<BeamElement> tool_elements(const Assembly& assembly, const Eigen::VectorXd& frequency_hz) {
+  std::vector<BeamElement> out = beam_elements(assembly.tool, frequency_hz);
+  const double mass_kg = assembly.accelerometer.mass_kg;
+  if (mass_kg == 0.0) return out;
+  const Eigen::Vector2d at(1.0, -assembly.accelerometer.offset_m);
+  const Eigen::Matrix2d mass = mass_kg * at * at.transpose();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    BeamElement& element = out[i];
+    const double omega = 2.0 * std::numbers::pi * frequency_hz(static_cast<Eigen::Index>(i));
+    const Eigen::Matrix2cd inertia = (-omega * omega * mass).cast<Complex>();
+    const Eigen::Matrix2cd loaded = (Eigen::Matrix2cd::Identity() + element.clamped * inertia).inverse();
+    const Eigen::Matrix2cd carry = loaded * element.carry;
+    element.stiffness += (element.carry.transpose() * inertia * carry).eval();
+    element.clamped = (loaded * element.clamped).eval();
+    element.carry = carry;
+  }
+  return out;
+}
+
 }  // namespace robomill::coupling::detail

@@ -25,6 +25,11 @@ struct BeamElement {
 [[nodiscard]] std::vector<BeamElement> beam_elements(const std::vector<Segment>& segments,
                                                      const Eigen::VectorXd& frequency_hz);
 
+/// The tool's, end 1 with the accelerometer on it: M = m [1, -e; -e, e²] of its mass m at e beyond the tip, where u - e
+/// θ is its motion, between end 1 and the tool. With E = (1 - ω² g M)⁻¹: g becomes E g, t becomes E t, and k becomes k
+/// - ω² tᵀ M E t.
+[[nodiscard]] std::vector<BeamElement> tool_elements(const Assembly& assembly, const Eigen::VectorXd& frequency_hz);
+
 /// Kc⁻¹ of a whole joint.
 [[nodiscard]] Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz);
 

@@ -48,6 +48,16 @@ std::vector<detail::Square<N>> under_tool(const Assembly& assembly, const std::v
   return out;
 }
 
+template <class Matrix>
+void require_finite_lines(const std::vector<Matrix>& receptance, const Eigen::VectorXd& frequency_hz) {
+  for (std::size_t i = 0; i < receptance.size(); ++i) {
+    if (receptance[i].allFinite()) continue;
+    throw InvalidInput("frequency_hz", frequency_hz(static_cast<Index>(i)), "Hz",
+                       "has no receptance: it is a resonance without damping, or beyond what can be computed",
+                       "Give the segments a loss factor (steel has 0.001 to 0.02), and frequencies of a machine");
+  }
+}
+
 template <int N>
 std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<BeamElement>& tool,
                                     const std::vector<detail::Square<N>>& base, const Eigen::VectorXd& frequency_hz) {
@@ -56,12 +66,18 @@ std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<
   parallel_for(under.size(), lines_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) out[i] = detail::on_base<N>(tool[i], under[i]);
   });
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i].allFinite()) continue;
-    throw InvalidInput("frequency_hz", frequency_hz(static_cast<Index>(i)), "Hz",
-                       "has no receptance: it is a resonance without damping, or beyond what can be computed",
-                       "Give the segments a loss factor (steel has 0.001 to 0.02), and frequencies of a machine");
+  require_finite_lines(out, frequency_hz);
+  return out;
+}
+
+/// R11 of the tool that nothing holds: g + t k⁻¹ tᵀ.
+std::vector<Eigen::Matrix2cd> free_tips(const std::vector<BeamElement>& tool, const Eigen::VectorXd& frequency_hz) {
+  std::vector<Eigen::Matrix2cd> out;
+  out.reserve(tool.size());
+  for (const BeamElement& element : tool) {
+    out.emplace_back(element.clamped + element.carry * element.stiffness.inverse() * element.carry.transpose());
   }
+  require_finite_lines(out, frequency_hz);
   return out;
 }
 
@@ -96,7 +112,7 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
   assembly.validate();
   require_frequencies(frequency_hz);
   Base base = detail::base_receptances(assembly.holder, frequency_hz);
-  const std::vector<BeamElement> tool = detail::beam_elements(assembly.tool, frequency_hz);
+  const std::vector<BeamElement> tool = detail::tool_elements(assembly, frequency_hz);
   TipResult result;
   result.frfs.frequency_hz = frequency_hz;
   const bool rotations = options.rotations;
@@ -107,7 +123,7 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
     add_frfs(both, Axis::x, Axis::y, 0, 2, rotations, result.frfs);
     add_frfs(both, Axis::y, Axis::y, 2, 2, rotations, result.frfs);
   } else {
-    const auto x = tips<2>(assembly, tool, base.x, frequency_hz);
+    const auto x = assembly.holder.free ? free_tips(tool, frequency_hz) : tips<2>(assembly, tool, base.x, frequency_hz);
     add_frfs(x, Axis::x, Axis::x, 0, 0, rotations, result.frfs);
     // A round assembly is the same in both planes.
     const auto y = base.measured ? tips<2>(assembly, tool, base.y, frequency_hz) : x;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -19,8 +20,10 @@ namespace tip_test {
 
 using modal::FrfSet;
 using testing::bar;
+using testing::bending_stiffness;
 using testing::free_frfs;
 using testing::hertz;
+using testing::mass_per_length;
 using testing::peak_hz;
 using testing::published_pair;
 using testing::receptance;
@@ -36,6 +39,12 @@ double relative(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
 
 Assembly clamped(const Segment& segment) {
   return {.tool = {segment}, .joint = {}, .holder = {}};
+}
+
+Segment undamped_bar(double length_m) {
+  Segment segment = bar(length_m);
+  segment.loss_factor = 1e-7;
+  return segment;
 }
 
 TEST(Tip, PublishedBarHasItsFrequencies) {
@@ -287,6 +296,111 @@ TEST(Tip, ADistributedJointInAMeasuredHolderMovesWithItsMouth) {
   EXPECT_LT(relative(tip_xx(assembly, f), tip_xx(plain, f)), 1e-6);
 }
 
+/// The first root of 1 + cos x cosh x + μ x (cos x sinh x - sin x cosh x): a clamped beam with μ of its mass at its
+/// end.
+double clamped_root(double mass_ratio) {
+  const auto f = [mass_ratio](double x) {
+    return 1.0 + std::cos(x) * std::cosh(x) +
+           mass_ratio * x * (std::cos(x) * std::sinh(x) - std::sin(x) * std::cosh(x));
+  };
+  double low = 1.0;
+  double high = 2.2;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f(low) * f(middle) <= 0.0 ? high : low) = middle;
+  }
+  return low;
+}
+
+TEST(Tip, OfABarWithAnAccelerometerHasTheFrequencyOfItsEquation) {
+  const Segment s = undamped_bar(0.16982);
+  for (const double mass_kg : {0.0, 0.001, 0.0031, 0.0056, 0.15}) {
+    const double x = clamped_root(mass_kg / (mass_per_length(s) * s.length_m));
+    const double expected_hz = x * x * std::sqrt(bending_stiffness(s) / mass_per_length(s)) /
+                               (2.0 * std::numbers::pi * s.length_m * s.length_m);
+    Assembly assembly = clamped(s);
+    assembly.accelerometer.mass_kg = mass_kg;
+    const Eigen::VectorXd f = expected_hz + Eigen::ArrayXd::LinSpaced(2001, -0.01, 0.01);
+    EXPECT_NEAR(resonance_hz(f, tip_xx(assembly, f)), expected_hz, 2e-5) << mass_kg;
+  }
+}
+
+// A point mass beyond the tip is a short massless rigid bar with a heavy end.
+TEST(Tip, AnAccelerometersOffsetIsALeverAtTheTip) {
+  const Eigen::VectorXd f = hertz(3000, 10);
+  Assembly offset = published_pair();
+  offset.accelerometer = {.mass_kg = 0.0056, .offset_m = 0.004};
+  Assembly lever = published_pair();
+  Segment link = bar(0.004);
+  link.youngs_modulus_pa = 1e18;
+  link.density_kg_per_m3 = 1e-6;
+  link.loss_factor = 0.0;
+  lever.tool.insert(lever.tool.begin(), link);
+  lever.accelerometer = {.mass_kg = 0.0056};
+  const FrfSet at_end = tip_frfs(lever, f, {.rotations = true}).frfs;
+  const FrfSet at_tip = tip_frfs(offset, f, {.rotations = true}).frfs;
+  // The tip moves by u + e θ of the lever's end, for a force there as for f and e f of moment at its end.
+  const double e = 0.004;
+  const Eigen::VectorXcd moved = receptance(at_end, "xx") +
+                                 e * (receptance(at_end, "x:my") + receptance(at_end, "ry:x")) +
+                                 e * e * receptance(at_end, "ry:my");
+  EXPECT_LT(relative(moved, receptance(at_tip, "xx")), 2e-6);
+  EXPECT_LT(relative(receptance(at_end, "ry:my"), receptance(at_tip, "ry:my")), 2e-6);
+}
+
+// Source: [BishopJohnson1960], the free-free beam: u_1/f_1 = -c1 / (λ³ EI (cos cosh - 1)).
+TEST(Tip, OfAFreeToolIsTheClosedFormOfAFreeBeam) {
+  using Complex = std::complex<double>;
+  const Segment s = bar(0.16982);
+  Assembly assembly = clamped(s);
+  assembly.holder.free = true;
+  const Eigen::VectorXd f = hertz(20000, 50);
+  const FrfSet tip = tip_frfs(assembly, f, {.rotations = true}).frfs;
+  const Complex stiffness = bending_stiffness(s) * Complex(1.0, s.loss_factor);
+  for (Eigen::Index i = 0; i < f.size(); i += 7) {
+    const double omega = 2.0 * std::numbers::pi * f(i);
+    const Complex wave = std::pow(omega * omega * mass_per_length(s) / stiffness, 0.25);
+    const Complex x = wave * s.length_m;
+    const Complex c1 = std::cos(x) * std::sinh(x) - std::sin(x) * std::cosh(x);
+    const Complex c2 = std::sin(x) * std::sinh(x);
+    const Complex c5 = std::cos(x) * std::sinh(x) + std::sin(x) * std::cosh(x);
+    const Complex c7 = stiffness * (std::cos(x) * std::cosh(x) - 1.0);
+    const Complex h = -c1 / (wave * wave * wave * c7);
+    // The closed form loses (λL)⁻⁴ of its digits for long waves.
+    const double digits = 2e-11 * (1.0 + std::pow(std::abs(x), -4.0));
+    EXPECT_LT(std::abs(receptance(tip, "xx")(i) - h), digits * std::abs(h)) << f(i);
+    const Complex n = c2 / (wave * wave * c7);
+    EXPECT_LT(std::abs(std::abs(receptance(tip, "ry:x")(i)) - std::abs(n)), digits * std::abs(n)) << f(i);
+    const Complex p = c5 / (wave * c7);
+    EXPECT_LT(std::abs(receptance(tip, "ry:my")(i) - p), digits * std::abs(p)) << f(i);
+  }
+  EXPECT_EQ(receptance(tip, "xx"), receptance(tip, "yy"));
+}
+
+// Far below the first mode a free tool is a rigid body: u_1/f_1 = -4 / (m ω²), and with a mass on the tip Newton's.
+TEST(Tip, OfAFreeToolIsARigidBodyAtLowFrequencies) {
+  const Segment s = bar(0.16982);
+  Assembly assembly = clamped(s);
+  assembly.holder.free = true;
+  const Eigen::VectorXd f = Eigen::VectorXd::Constant(1, 1e-3);
+  const double omega2 = std::pow(2.0 * std::numbers::pi * f(0), 2);
+  const double mass_kg = mass_per_length(s) * s.length_m;
+  EXPECT_NEAR(tip_xx(assembly, f)(0).real(), -4.0 / (mass_kg * omega2), 1e-9 / (mass_kg * omega2));
+  assembly.accelerometer.mass_kg = 0.02;
+  EXPECT_NEAR(tip_xx(assembly, f)(0).real(), -1.0 / ((0.25 * mass_kg + 0.02) * omega2), 1e-9 / (mass_kg * omega2));
+}
+
+// The limit of ever softer joints, without singular numbers.
+TEST(Tip, OfAFreeToolIsThatOfASoftJoint) {
+  const Eigen::VectorXd f = hertz(5000, 100);
+  Assembly assembly = clamped(bar(0.11892));
+  assembly.joint = Joint{.translational_stiffness_n_per_m = 1e-3, .rotational_stiffness_n_m_per_rad = 1e-6};
+  const Eigen::VectorXcd soft = tip_xx(assembly, f);
+  assembly.joint.reset();
+  assembly.holder.free = true;
+  EXPECT_LT(relative(soft, tip_xx(assembly, f)), 1e-7);
+}
+
 TEST(Tip, DoesNotDependOnTheNumberOfThreads) {
   Assembly assembly = published_pair();
   assembly.tool = {bar(0.05, Beam::timoshenko), bar(0.06)};
@@ -331,6 +445,18 @@ TEST(Tip, RejectsWhatItCannotCouple) {
   assembly = published_pair();
   assembly.tool.clear();
   EXPECT_NE(message(assembly, f).find("tool"), std::string::npos);
+  assembly = published_pair();
+  assembly.holder.free = true;
+  EXPECT_NE(message(assembly, f).find("holder.free: must not be true beside segments"), std::string::npos)
+      << message(assembly, f);
+  assembly.holder.segments.clear();
+  assembly.joint = Joint{.translational_stiffness_n_per_m = 1.0, .rotational_stiffness_n_m_per_rad = 1.0};
+  EXPECT_NE(message(assembly, f).find("holder.free: must not be true beside a joint"), std::string::npos);
+  assembly = published_pair();
+  assembly.accelerometer.mass_kg = -1.0;
+  EXPECT_NE(message(assembly, f).find("accelerometer.mass_kg = -1 kg; must be >= 0"), std::string::npos);
+  assembly.accelerometer.mass_kg = std::numeric_limits<double>::infinity();
+  EXPECT_NE(message(assembly, f).find("accelerometer.mass_kg"), std::string::npos);
   assembly = published_pair();
   assembly.joint = Joint{.translational_stiffness_n_per_m = -1.0, .rotational_stiffness_n_m_per_rad = 1.0};
   EXPECT_NE(message(assembly, f).find("joint.translational_stiffness_n_per_m = -1"), std::string::npos);

@@ -150,6 +150,8 @@ constexpr std::array rows = std::to_array<UsualRange>({
     {"response_mv_per_m_per_s", 10, 1e7},
     {"response_mv_per_m", 1, 1e9},
     {"accelerometer_mass_kg", 1e-4, 0.2},
+    {"accelerometer.mass_kg", 1e-4, 0.2},
+    {"accelerometer.offset_mm", 0.1, 50},
     {"force_overload_n", 10, 100'000},
     {"response_overload_m_per_s2", 10, 1e6},
     {"response_overload_m_per_s", 0.01, 1000},

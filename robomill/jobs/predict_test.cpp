@@ -35,6 +35,8 @@ TEST(JointBar, PeaksAreThoseOfTheReadme) {
   EXPECT_NEAR(first_peak_hz("rigid.toml"), clamped_hz, 2e-4 * clamped_hz);
   EXPECT_NEAR(first_peak_hz("assembly.toml"), 294.32, 0.02);
   EXPECT_NEAR(first_peak_hz("soft.toml"), 275.0, 0.1);
+  // Source: the root 1.838110 of 1 + cos x cosh x + μ x (cos x sinh x - sin x cosh x), μ = 3.1 g / 149.808 g.
+  EXPECT_NEAR(first_peak_hz("mass.toml"), std::pow(1.838110 / 1.8751040687, 2) * clamped_hz, 0.05);
 }
 
 class Predicted : public ::testing::Test {

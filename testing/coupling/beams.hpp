@@ -1,7 +1,9 @@
 #pragma once
 // Beams that several tests share.
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
+#include <numbers>
 #include <vector>
 
 #include "robomill/coupling/assembly.hpp"
@@ -16,6 +18,15 @@ inline Segment bar(double length_m, Beam beam = Beam::euler_bernoulli) {
           .density_kg_per_m3 = 7800.0,
           .loss_factor = 0.02,
           .beam = beam};
+}
+
+/// EI without its loss, of a solid bar.
+inline double bending_stiffness(const Segment& s) {
+  return s.youngs_modulus_pa * std::numbers::pi * std::pow(s.diameter_m, 4) / 64.0;
+}
+/// ρA of a solid bar.
+inline double mass_per_length(const Segment& s) {
+  return s.density_kg_per_m3 * std::numbers::pi * s.diameter_m * s.diameter_m / 4.0;
 }
 
 /// 118.92 mm of it on 50.90 mm clamped at a wall.

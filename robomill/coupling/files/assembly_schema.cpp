@@ -139,6 +139,7 @@ const Schema<HolderTable>& holder_table() {
       "holder", "what holds the tool; without it a rigid wall",
       {key("segments", &HolderTable::segments, segment_options_table(), "from the joint to the wall; []: a rigid wall")
            .as("holder.segments"),
+       key("free", &HolderTable::free, "nothing holds the tool: it hangs free, without [joint] and the other keys"),
        key("receptances", &HolderTable::receptances, "a measured holder, any FRF file; in place of segments"),
        key("points_mm", &HolderTable::position_m,
            "the file holds translations at two or three points (1x:1x, 2x:1x, …), at these distances from the mouth: "
@@ -156,6 +157,16 @@ const Schema<HolderTable>& holder_table() {
        of(&HolderTable::options,
           key("max_amplification", &HolderOptions::max_amplification, "of errors: lines above it are unreliable")
               .above(0.0))});
+  return table;
+}
+
+const Schema<Accelerometer>& accelerometer_table() {
+  static const Schema<Accelerometer> table(
+      "accelerometer", "glued to the tip when it was measured: a mass that the FRFs have, not the tool that cuts",
+      {key("mass_kg", &Accelerometer::mass_kg, "of it, with what of cable and glue moves with it; 0: none")
+           .at_least(0.0)
+           .at_most(1.0, "Accelerometers have 0.0005 to 0.05 kg"),
+       key("offset_mm", &Accelerometer::offset_m, "of its centre of mass, beyond the tip").at_least(0.0)});
   return table;
 }
 

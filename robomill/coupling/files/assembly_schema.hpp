@@ -37,8 +37,12 @@ struct HolderTable {
   std::vector<double> position_m = {};  ///< where these were measured, from the mouth
   std::vector<Segment> artefact = {};
   HolderOptions options = {};
+  bool free = false;
 };
 [[nodiscard]] const io::Schema<HolderTable>& holder_table();
+
+/// [accelerometer]
+[[nodiscard]] const io::Schema<Accelerometer>& accelerometer_table();
 
 /// [search]
 [[nodiscard]] const io::Schema<JointFitOptions>& search_table();

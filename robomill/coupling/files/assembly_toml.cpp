@@ -193,12 +193,35 @@ void read_measured(const io::TomlFile& file, const HolderTable& given, AssemblyF
   holder.receptances = out.holder->receptances;
 }
 
+void hang_free(const io::TomlFile& file, AssemblyFile& out) {
+  for (const char* key : {"holder.segments", "holder.receptances", "holder.points_mm", "holder.artefact",
+                          "holder.regularisation", "holder.max_amplification", "joint"}) {
+    if (file.has(key)) throw file.reject(key, "must not stand beside holder.free = true", "Nothing holds the tool");
+  }
+  out.assembly.holder.free = true;
+  out.notes.emplace_back("The tool hangs free: nothing holds it.");
+}
+
+void read_accelerometer(io::TomlFile& file, AssemblyFile& out) {
+  Accelerometer& given = out.assembly.accelerometer;
+  accelerometer_table().read(file, "accelerometer", given, "accelerometer.");
+  if (given.mass_kg == 0.0) {
+    if (file.has("accelerometer.offset_mm")) file.require("accelerometer.mass_kg", "An offset of no mass says nothing");
+    return;
+  }
+  out.notes.push_back(fmt::format(
+      "The FRFs are those of the tip with an accelerometer of {:.4g} kg on it: without [accelerometer] they "
+      "are the tool's own.",
+      given.mass_kg));
+}
+
 void read_holder(io::TomlFile& file, AssemblyFile& out) {
   if (!file.has("holder")) return;
   HolderTable given;
   holder_table().read(file, "holder", given);
   check_segments(file, "holder.segments", given.segments);
   check_segments(file, "holder.artefact", given.artefact);
+  if (given.free) return hang_free(file, out);
   out.receptances = given.receptances;
   if (!given.receptances.empty()) {
     if (file.has("holder.segments")) {
@@ -242,7 +265,7 @@ void add_defaults(const io::TomlFile& file, const AssemblyReading& reading, Asse
   const bool sought = reading.joint_sought || !reading.joint.empty();
   const bool damped =
       file.has("joint.translational_damping_n_s_per_m") || file.has("joint.rotational_damping_n_m_s_per_rad");
-  if (!joint && !sought) add("Joint between tool and holder", "rigid", "joint");
+  if (!joint && !sought && !out.assembly.holder.free) add("Joint between tool and holder", "rigid", "joint");
   if (joint && !sought && !damped) add("Damping of the joint", "none", "joint.translational_damping_n_s_per_m");
   if (!file.has("holder")) add("Holder", "none, the tool stands on a rigid wall", "holder");
   const auto segments = [&](const char* table, const std::vector<Segment>& of) {
@@ -299,6 +322,7 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   }
   read_joint(file, reading, found, out.assembly.joint);
   read_holder(file, out);
+  read_accelerometer(file, out);
   search_table().read(file, "search", out.search);
   file.locate([&] { out.search.validate(); });
   add_defaults(file, reading, out);

@@ -189,6 +189,45 @@ TEST(AssemblyToml, WithoutAHolderTheToolStandsOnAWall) {
   }
 }
 
+TEST(AssemblyToml, AFreeToolIsHeldByNothing) {
+  const test::Folder folder;
+  const std::string lines = "[frequency]\nrange_hz = [100, 101]\nstep_hz = 1\n";
+  const AssemblyFile file = read_assembly(folder.file("assembly.toml", lines + bar + "[holder]\nfree = true\n"));
+  EXPECT_TRUE(file.assembly.holder.free);
+  EXPECT_EQ(file.notes, std::vector<std::string>{"The tool hangs free: nothing holds it."});
+  EXPECT_TRUE(std::ranges::none_of(file.assumed, [](const Assumption& one) { return one.key == "joint"; }));
+  const auto said = [&](const std::string& more) {
+    return test::rejection([&] {
+      static_cast<void>(read_assembly(folder.file("assembly.toml", lines + bar + "[holder]\nfree = true\n" + more)));
+    });
+  };
+  EXPECT_NE(said("segments = []\n").find("assembly.toml:12: holder.segments"), std::string::npos)
+      << said("segments = []\n");
+  EXPECT_NE(said("[joint]\ntranslational_stiffness_n_per_m = 1\nrotational_stiffness_n_m_per_rad = 1\n")
+                .find("must not stand beside holder.free = true"),
+            std::string::npos);
+  EXPECT_FALSE(read_assembly(folder.file("assembly.toml", lines + bar + "[holder]\nfree = false\nsegments = []\n"))
+                   .assembly.holder.free);
+}
+
+TEST(AssemblyToml, AnAccelerometerStandsOnTheTip) {
+  const test::Folder folder;
+  const std::string lines = "[frequency]\nrange_hz = [100, 101]\nstep_hz = 1\n";
+  const auto read = [&](const std::string& table) {
+    return read_assembly(folder.file("assembly.toml", lines + bar + table));
+  };
+  const AssemblyFile file = read("[accelerometer]\nmass_kg = 0.0031\noffset_mm = 3.5\n");
+  EXPECT_DOUBLE_EQ(file.assembly.accelerometer.mass_kg, 0.0031);
+  EXPECT_DOUBLE_EQ(file.assembly.accelerometer.offset_m, 0.0035);
+  ASSERT_EQ(file.notes.size(), 1U);
+  EXPECT_NE(file.notes[0].find("an accelerometer of 0.0031 kg on it"), std::string::npos) << file.notes[0];
+  EXPECT_EQ(read("").assembly.accelerometer.mass_kg, 0.0);
+  const auto said = [&](const std::string& table) { return test::rejection([&] { static_cast<void>(read(table)); }); };
+  EXPECT_NE(said("[accelerometer]\nmass_kg = -1\n").find("accelerometer.mass_kg = -1 kg"), std::string::npos);
+  EXPECT_NE(said("[accelerometer]\nmass_kg = 3.1\n").find("accelerometer.mass_kg = 3.1 kg"), std::string::npos);
+  EXPECT_NE(said("[accelerometer]\noffset_mm = 3\n").find("accelerometer.mass_kg"), std::string::npos);
+}
+
 // What the file leaves open is listed with its key, of segments by how many of a table leave it.
 TEST(AssemblyToml, ListsWhatItAssumes) {
   const test::Folder folder;

@@ -33,7 +33,9 @@ const Schema<coupling::AssemblyFile>& holder_table() {
   const auto drawn = [](const AssemblyFile& file) { return file.assembly.holder.receptances.frfs.empty(); };
   static const Schema<AssemblyFile> table(
       "assembly_holder", "the holder: its segments, or its measured receptances",
-      {where(drawn, key(
+      {key(
+           "free", [](const AssemblyFile& file) { return file.assembly.holder.free; }, "nothing holds the tool"),
+       where(drawn, key(
                         "segments", [](const AssemblyFile& file) { return file.assembly.holder.segments; },
                         coupling::segment_table(), "from the joint on")),
        where([drawn](const AssemblyFile& file) { return !drawn(file); },
@@ -89,6 +91,9 @@ const Schema<TipPrediction>& assembly_table() {
            .nullable(),
        key(
            "holder", [](const Tip& tip) { return &tip.file; }, holder_table(), "behind the joint"),
+       key(
+           "accelerometer_mass_kg", [](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg; },
+           "glued to the tip; 0: none"),
        key("peaks", &Tip::peaks, tip_peak_table(), "the first of each FRF"), error_key(),
        key(
            "suspect_hz", [](const Tip& tip) { return tip.tip.suspect_hz; },

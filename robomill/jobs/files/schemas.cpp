@@ -133,9 +133,9 @@ const std::vector<Key>& shared_tables() {
 
 const std::vector<Key>& assembly_tables() {
   static const std::vector<Key> all = {
-      table("frequency", coupling::frequency_table()), table("tool", coupling::segment_options_table(), 1),
-      table("joint", coupling::joint_options_table()), table("holder", coupling::holder_table()),
-      table("search", coupling::search_table())};
+      table("frequency", coupling::frequency_table()),         table("tool", coupling::segment_options_table(), 1),
+      table("joint", coupling::joint_options_table()),         table("holder", coupling::holder_table()),
+      table("accelerometer", coupling::accelerometer_table()), table("search", coupling::search_table())};
   return all;
 }
 

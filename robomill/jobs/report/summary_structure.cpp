@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,12 @@ void add_compliance(std::string& out, const coupling::AssemblyFile& file, const 
   }
   const Eigen::VectorXd low = Eigen::VectorXd::Constant(1, 0.01 * tip.frequency_hz(0));
   const double compliance = coupling::tip_frfs(file.assembly, low).frfs.find(name)->receptance(0).real();
+  if (file.assembly.holder.free) {
+    const double omega = 2.0 * std::numbers::pi * low(0);
+    io::append(out, "{}: hangs free, far below its first mode with an effective mass of {:.4g} kg at the tip\n", text,
+               -1.0 / (omega * omega * compliance));
+    return;
+  }
   io::append(out, "{}: static compliance {:.4g} µm/N (stiffness {:.4g} N/µm)\n", text, compliance / units::um,
              units::um / compliance);
 }
