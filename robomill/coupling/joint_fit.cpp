@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
+#include <utility>
 
 #include "robomill/base/cost.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/beam_element.hpp"
+#include "robomill/coupling/distributed.hpp"
 #include "robomill/coupling/joint_hybrid.hpp"
 #include "robomill/coupling/joint_knowledge.hpp"
 #include "robomill/coupling/joint_model.hpp"
@@ -123,14 +126,18 @@ void note_suspects(const modal::FrfSet& measured, const modal::Frf& frf, detail:
 
 /// The assembly with the joint that is looked for: what of its own joint stays.
 Joint joint_frame(const Assembly& assembly, const JointFitOptions& options) {
+  Joint joint = assembly.joint.value_or(Joint{});
   Assembly rest = assembly;
   rest.joint.reset();
+  if (joint.points > 1) {  // where it stands is not looked for
+    rest.joint = joint;
+    rest.joint->translational_stiffness_n_per_m = rest.joint->rotational_stiffness_n_m_per_rad =
+        std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
+  }
   rest.validate();
-  Joint joint = assembly.joint.value_or(Joint{});
-  if (joint.points != 1) {
-    throw InvalidInput("joint.points", joint.points, "",
-                       "must be 1 where a joint is looked for: a distributed joint is only predicted, not found",
-                       "Find the joint at the mouth, which one FRF determines");
+  if (rest.holder.free) {
+    throw InvalidInput("holder.free", "must not be true where a joint is looked for",
+                       "A tool that hangs free has none");
   }
   const double cross = joint.cross_stiffness_n_per_rad;
   require_finite("joint.cross_stiffness_n_per_rad", cross, "N/rad");
@@ -139,6 +146,16 @@ Joint joint_frame(const Assembly& assembly, const JointFitOptions& options) {
                        "must be below the geometric mean of the two stiffnesses' upper bounds");
   }
   return joint;
+}
+
+detail::JointModel model_of(const Assembly& assembly, const Joint& frame, const std::vector<Eigen::Matrix2cd>& base,
+                            const Eigen::VectorXd& frequency_hz) {
+  std::vector<detail::BeamElement> tool = detail::tool_elements(assembly, frequency_hz);
+  const double cross = frame.cross_stiffness_n_per_rad;
+  if (frame.points == 1) return detail::JointModel(tool, base, frequency_hz, cross);
+  return detail::JointModel(
+      std::make_shared<const detail::DistributedTip>(std::move(tool), frame, assembly.holder, base, frequency_hz),
+      frequency_hz, cross);
 }
 
 void set_values(const detail::JointValues& values, Joint& joint) {
@@ -197,9 +214,12 @@ void JointFitOptions::validate() const {
 
 namespace {
 
+constexpr double operations_of_point = 2e3;  // of a distributed joint, a line
+
 /// Each individual of each generation is a tip FRF.
-void require_affordable_genes(const JointFitOptions& options, Index lines) {
-  constexpr double operations_of_line = 6.0, bytes_of_individual = 200.0, usual = 50.0;
+void require_affordable_genes(const JointFitOptions& options, Index lines, int points) {
+  constexpr double operations_at_mouth = 6.0, bytes_of_individual = 200.0, usual = 50.0;
+  const double operations_of_line = points > 1 ? points * operations_of_point : operations_at_mouth;
   const double population = options.population, generations = options.generations;
   require_affordable(
       {.operations = population * generations * (1e3 + operations_of_line * static_cast<double>(lines)),
@@ -210,6 +230,20 @@ void require_affordable_genes(const JointFitOptions& options, Index lines) {
              .value = generations,
              .unit = "generations",
              .times_usual = generations / usual}})});
+}
+
+/// An evolution on a part of the lines, and least squares with derivatives on all of them.
+void require_affordable_points(const Joint& joint, Index lines) {
+  constexpr double evaluations_of_part = 1e4, lines_of_part = 256.0, evaluations_of_all = 100.0;
+  constexpr double bytes_of_point = 500.0, usual_points = 5.0;
+  const double all = static_cast<double>(lines);
+  require_affordable({.operations = joint.points * operations_of_point *
+                                    (evaluations_of_part * std::min(all, lines_of_part) + evaluations_of_all * all),
+                      .bytes = bytes_of_point * joint.points * all,
+                      .dominant = {.field = "joint.points",
+                                   .value = static_cast<double>(joint.points),
+                                   .unit = "points",
+                                   .times_usual = joint.points / usual_points}});
 }
 
 }  // namespace
@@ -225,13 +259,12 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
   JointFitResult result;
   const std::vector<Index> lines = fitted_lines(measured.frequency_hz, frf, result.notes);
   const Eigen::VectorXd frequency_hz = measured.frequency_hz(lines);
-  if (options.method == JointMethod::ga) require_affordable_genes(options, frequency_hz.size());
+  if (options.method == JointMethod::ga) require_affordable_genes(options, frequency_hz.size(), frame.points);
+  if (options.method == JointMethod::hybrid && frame.points > 1) require_affordable_points(frame, frequency_hz.size());
   detail::Base base = detail::base_receptances(assembly.holder, frequency_hz);
   result.notes.insert(result.notes.end(), base.notes.begin(), base.notes.end());
   note_suspects(measured, frf, base, result);
-  const detail::JointModel model(detail::beam_elements(assembly.tool, frequency_hz),
-                                 options.axis == Axis::x ? base.x : base.y, frequency_hz,
-                                 frame.cross_stiffness_n_per_rad);
+  const detail::JointModel model = model_of(assembly, frame, options.axis == Axis::x ? base.x : base.y, frequency_hz);
   detail::JointData data = detail::joint_data(frf, lines, options.noise_floor);
   detail::JointSearch search = options.method == JointMethod::ga
                                    ? detail::search_by_genes(model, data.measured, bounded, progress)

@@ -96,11 +96,12 @@ inline constexpr Name<JointFitResult::Status> joint_status_names[] = {
     {"stalled", JointFitResult::Status::stalled}};
 
 /// Finds the joint with which the assembly's tip moves as measured. Of the assembly's own joint the cross stiffness is
-/// kept, and it must have one point; method and accuracy in README.md.
+/// kept, and where it stands: at the mouth, or at several points along the shank, each with an equal share of the whole
+/// joint that is found. Method and accuracy in README.md.
 /// @param measured  holds xx (or yy, by options.axis), of the unnumbered tip or of one point alone; with a measured
 ///     holder on its axis. A line at 0 Hz is left out.
 /// @throws InvalidInput if an option, the assembly or the set is not valid, the FRF is missing, zero or creates energy
-///     at most lines, the axes differ, or the joint is distributed
+///     at most lines, the axes differ, or nothing holds the tool
 /// @throws Interrupted when progress says so
 /// Source: [JointIdentification] (ga); [Storn1997] (differential evolution)
 [[nodiscard]] ROBOMILL_API JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured,

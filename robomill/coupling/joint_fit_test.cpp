@@ -344,6 +344,19 @@ TEST(JointFit, KeepsTheCrossStiffness) {
   EXPECT_NEAR(result.joint.rotational_stiffness_n_m_per_rad, planted[2], 1e-4 * planted[2]);
 }
 
+// What the accelerometer's mass does is not the joint's: with its mass in the assembly the joint is found as it is.
+TEST(JointFit, FindsTheJointUnderAnAccelerometer) {
+  Assembly assembly = testing::published_pair();
+  assembly.accelerometer = {.mass_kg = 0.0056, .offset_m = 0.003};
+  const modal::FrfSet measured = tip_with(assembly, joint_of(planted), testing::hertz(2000));
+  const JointFitResult with_mass = fit_joint(assembly, measured, {});
+  EXPECT_LT(with_mass.relative_error, 1e-8);
+  EXPECT_NEAR(with_mass.joint.rotational_stiffness_n_m_per_rad, planted[2], 1e-4 * planted[2]);
+  const JointFitResult without = fit_joint(testing::published_pair(), measured, {});
+  EXPECT_GT(without.relative_error, 1e-3);
+  EXPECT_LT(without.joint.rotational_stiffness_n_m_per_rad, 0.9 * planted[2]);
+}
+
 TEST(JointFit, ReadsTheOtherPlaneAndLeavesOutZeroHertz) {
   modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(1000));
   measured.frfs[0].name = modal::parse_frf_name("3y:3y");
@@ -422,10 +435,13 @@ TEST(JointFit, RejectsBadInput) {
   EXPECT_EQ(of(pair, tip_with(pair, joint_of(planted), testing::hertz(4))), "measured");
 
   Assembly assembly = pair;
-  assembly.joint = Joint{.points = 3, .insertion_length_m = 0.01, .shank = {testing::bar(0.01)}};
-  EXPECT_EQ(of(assembly, good), "joint.points");
+  assembly.joint = Joint{.points = 3, .insertion_length_m = 0.02, .shank = {testing::bar(0.01)}};
+  EXPECT_EQ(of(assembly, good), "joint.insertion_length_m");
   assembly.joint = Joint{.cross_stiffness_n_per_rad = 1e13};
   EXPECT_EQ(of(assembly, good), "joint.cross_stiffness_n_per_rad");
+  assembly = pair;
+  assembly.holder = {.free = true};
+  EXPECT_EQ(of(assembly, good), "holder.free");
   assembly = pair;
   assembly.tool.clear();
   EXPECT_EQ(of(assembly, good), "tool");

@@ -5,9 +5,11 @@
 #include <complex>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/lanes.hpp"
+#include "robomill/base/parallel.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
@@ -169,19 +171,49 @@ JointModel::JointModel(const std::vector<BeamElement>& tool, const std::vector<E
   }
 }
 
+JointModel::JointModel(std::shared_ptr<const DistributedTip> tip, const Eigen::VectorXd& frequency_hz,
+                       double cross_stiffness_n_per_rad)
+    : cross_(cross_stiffness_n_per_rad), distributed_(std::move(tip)) {
+  resize(frequency_hz.size());
+  for (Index i = 0; i < lines_; ++i) {
+    omega_[static_cast<std::size_t>(i)] = 2.0 * std::numbers::pi * frequency_hz(i);
+    line_of_.push_back(static_cast<std::size_t>(i));
+  }
+}
+
 JointModel JointModel::part(const std::vector<Index>& lines) const {
   JointModel part;
   part.cross_ = cross_;
+  part.distributed_ = distributed_;
   part.resize(static_cast<Index>(lines.size()));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::size_t from = static_cast<std::size_t>(lines[i]);
     part.omega_[i] = omega_[from];
+    if (distributed_) part.line_of_.push_back(line_of_[from]);
     for (std::size_t c = 0; c < constants; ++c) {
       part.real_[c][i] = real_[c][from];
       part.imag_[c][i] = imag_[c][from];
     }
   }
   return part;
+}
+
+void JointModel::evaluate_distributed(const JointValues& joint, Response& response, bool derivatives) const {
+  constexpr std::size_t lines_per_task = 32;
+  parallel_for(line_of_.size(), lines_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index at = static_cast<Index>(i);
+      Eigen::Matrix2cd stiffness;
+      stiffness << Complex(joint[0], omega_[i] * joint[1]), cross_, cross_, Complex(joint[2], omega_[i] * joint[3]);
+      const DistributedTip::Response line = distributed_->at(line_of_[i], stiffness, derivatives);
+      response.real(at) = line.receptance.real();
+      response.imag(at) = line.receptance.imag();
+      for (std::size_t j = 0; derivatives && j < 2; ++j) {
+        response.along_real[j](at) = -line.slope[j].real();
+        response.along_imag[j](at) = -line.slope[j].imag();
+      }
+    }
+  });
 }
 
 template <bool derivatives>
@@ -207,6 +239,7 @@ void JointModel::evaluate(const JointValues& joint, Response& response) const {
       out.along[j][1] = response.along_imag[j].data();
     }
   }
+  if (distributed_) return evaluate_distributed(joint, response, derivatives);
 #if defined(__x86_64__)
   if (kernels() != Kernels::baseline) return respond_avx2<derivatives>(in, joint, omega_.size(), out);
 #endif

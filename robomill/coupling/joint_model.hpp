@@ -1,9 +1,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "robomill/coupling/beam_element.hpp"
+#include "robomill/coupling/distributed.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 
 namespace robomill::coupling::detail {
@@ -33,6 +35,9 @@ class JointModel {
   /// @throws InvalidInput at a resonance without damping
   JointModel(const std::vector<BeamElement>& tool, const std::vector<Eigen::Matrix2cd>& base,
              const Eigen::VectorXd& frequency_hz, double cross_stiffness_n_per_rad);
+  /// Of a joint spread over the shank: H by the climb from its deep end, line by line.
+  JointModel(std::shared_ptr<const DistributedTip> tip, const Eigen::VectorXd& frequency_hz,
+             double cross_stiffness_n_per_rad);
   /// Of some lines alone, by their numbers.
   [[nodiscard]] JointModel part(const std::vector<Eigen::Index>& lines) const;
 
@@ -56,12 +61,15 @@ class JointModel {
   void resize(Eigen::Index lines);
   template <bool derivatives>
   void evaluate(const JointValues& joint, Response& response) const;
+  void evaluate_distributed(const JointValues& joint, Response& response, bool derivatives) const;
 
   enum Constant { rigid, v_u, v_theta, w_u, w_theta, z_u, z_theta, z_cross, z_cross_back, z_product, constants };
   Eigen::Index lines_ = 0;
   double cross_ = 0.0;
   std::vector<double> omega_;
   std::array<std::vector<double>, constants> real_, imag_;  // padded to whole vectors
+  std::shared_ptr<const DistributedTip> distributed_;       // null: a joint at the mouth
+  std::vector<std::size_t> line_of_;                        // of distributed_
 };
 
 }  // namespace robomill::coupling::detail

@@ -120,8 +120,8 @@ const Schema<Joint>& joint_options_table() {
             rows,
             {key("cross_stiffness_n_per_rad", &Joint::cross_stiffness_n_per_rad, "force for a rotation"),
              key("points", &Joint::points,
-                 "of a joint spread over the shank in the holder; 1: at the mouth; robomill joint finds a joint of "
-                 "one point")
+                 "of a joint spread over the shank in the holder; 1: at the mouth; robomill joint finds the whole of a "
+                 "joint that is spread so")
                  .at_least(1.0)
                  .at_most(100.0),
              key("insertion_length_mm", &Joint::insertion_length_m, "over which several points are").at_least(0.0),

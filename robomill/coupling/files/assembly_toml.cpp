@@ -43,6 +43,12 @@ std::vector<Segment> read_tool(io::TomlFile& file) {
 void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::optional<JointFile>& found,
                 std::optional<Joint>& out) {
   if (!file.has("joint")) {
+    if (found && found->joint.points > 1) {
+      throw file.reject("joint",
+                        fmt::format("must say where the {} points of {} stand", found->joint.points,
+                                    reading.joint.filename().string()),
+                        "Write [joint] with points, insertion_length_mm and shank");
+    }
     if (found) out = found->joint;
     return;
   }
@@ -56,9 +62,14 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::o
   } else if (found) {
     for (const io::Field<Joint>& field : joint_fields) joint.*field.value = found->joint.*field.value;
   }
-  if (found && joint.points > 1) {
-    throw file.reject("joint.points", "must be 1 where the joint is that of " + reading.joint.filename().string(),
-                      "A joint that was found stands at the mouth of the holder");
+  if (found && joint.points != found->joint.points) {
+    throw file.reject(
+        file.has("joint.points") ? "joint.points" : "joint",
+        fmt::format("must be {} where the joint is that of {}",
+                    file.has("joint.points") ? std::to_string(found->joint.points)
+                                             : fmt::format("of {} points", found->joint.points),
+                    reading.joint.filename().string()),
+        "A joint holds where it was found: at the mouth of the holder, or at so many points of the shank");
   }
   check_segments(file, "joint.shank", joint.shank);
   try {

@@ -48,7 +48,7 @@ struct AssemblyReading {
 /// rotations, by coupling::complete_rotations where holder.points_mm says where they were measured, and by
 /// coupling::remove_artefact where holder.artefact says on what.
 /// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks; as
-///     read_joint_json; or if joint.json is to stand in place of a joint of several points
+///     read_joint_json; or if the joint of joint.json has another number of points
 [[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const io::TomlSource& source,
                                                       const AssemblyReading& reading = {});
 

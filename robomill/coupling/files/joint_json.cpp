@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,9 @@ const Schema<JointFitResult>& joint_table() {
   static const Schema<Result> table(
       "joint", "the joint between tool and holder, found from an FRF at the tip",
       {key("joint", whole, values, "in SI"),
+       key(
+           "points", [](const Result& result) { return result.joint.points; },
+           "of the shank that have an equal share of it; 1: at the mouth"),
        key("objective", &Result::objective_m_per_n, "norm of |H| less |H model| over the lines, in m/N").nullable(),
        key("relative_error", &Result::relative_error, "norm of H - H model over that of H").nullable(),
        key("std", whole, deviations, "standard deviations"), key("identifiable", whole, identifiable, "by the FRF"),
@@ -131,6 +135,19 @@ std::string joint_csv(const JointFitResult& result) {
   return out;
 }
 
+namespace {
+
+int points_of(const io::JsonNode& root) {
+  if (!root.has("points")) return 1;
+  const double points = root.at("points").number();
+  if (!(points >= 1.0 && points <= 100.0 && points == std::floor(points))) {
+    throw root.at("points").reject("must be a whole number in 1 ... 100");
+  }
+  return static_cast<int>(points);
+}
+
+}  // namespace
+
 JointFile read_joint_json(const std::filesystem::path& path) {
   const io::Json json = io::read_json(path);
   JointFile out;
@@ -147,6 +164,7 @@ JointFile read_joint_json(const std::filesystem::path& path) {
     parts.where = path.string();
     throw InvalidInput(std::move(parts));
   }
+  out.joint.points = points_of(root);
   out.warnings = io::take_warnings(unusual);
   const std::string name = path.filename().string();
   out.notes.push_back(

@@ -18,7 +18,7 @@ namespace robomill::coupling {
 
 /// What joint.json says of a joint.
 struct JointFile {
-  Joint joint = {};                        ///< the four values; one point, no cross stiffness
+  Joint joint = {};                        ///< the four values and the number of points; no cross stiffness, no shank
   std::vector<std::string> notes = {};     ///< sentences for the user
   std::vector<std::string> warnings = {};  ///< which values its FRF did not show, and a search that did not converge
 };

@@ -169,6 +169,31 @@ TEST(JointJson, StandsInPlaceOfTheAssemblysJoint) {
       std::string::npos);
 }
 
+// A joint that is spread over the shank stands in place of another that is spread so, and of no other.
+TEST(JointJson, OfSeveralPointsStandsWhereSoManyAre) {
+  const test::Folder folder;
+  JointFitResult result = found();
+  result.joint.points = 3;
+  const std::filesystem::path path = folder.file("joint.json", joint_json(result));
+  EXPECT_EQ(read_joint_json(path).joint.points, 3);
+  const auto read = [&](const std::string& table) {
+    return read_assembly(folder.file("assembly.toml", rigid_assembly + table), {.joint = path});
+  };
+  const std::string shank =
+      "insertion_length_mm = 30\n[[joint.shank]]\nlength_mm = 30\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\n"
+      "density_kg_per_m3 = 7800\n";
+  const Joint joint = read("[joint]\npoints = 3\n" + shank).assembly.joint.value();
+  EXPECT_EQ(joint.points, 3);
+  EXPECT_EQ(joint.translational_stiffness_n_per_m, 2e7);
+  EXPECT_EQ(joint.shank.size(), 1U);
+  const auto said = [&](const std::string& table) { return test::rejection([&] { static_cast<void>(read(table)); }); };
+  EXPECT_NE(said("[joint]\npoints = 4\n" + shank).find("joint.points = 4; must be 3 where the joint is that"),
+            std::string::npos);
+  EXPECT_NE(said("[joint]\n").find("must be of 3 points where the joint is that"), std::string::npos)
+      << said("[joint]\n");
+  EXPECT_NE(said("").find("must say where the 3 points of joint.json stand"), std::string::npos) << said("");
+}
+
 TEST(JointJson, SaysWhatIsWrongWithAFile) {
   const test::Folder folder;
   const std::string good = joint_json(found());
@@ -193,6 +218,10 @@ TEST(JointJson, SaysWhatIsWrongWithAFile) {
             ": joint.rotational_damping_n_m_s_per_rad = -1 N m s/rad; must be >= 0");
   EXPECT_EQ(said(with("\"translational_stiffness_n_per_m\": true", "\"translational_stiffness_n_per_m\": 1")),
             ": identifiable.translational_stiffness_n_per_m = 1; must be true or false");
+  for (const char* points : {"0", "2.5", "101", "-1"}) {
+    EXPECT_EQ(said(with("\"points\": 1", std::string("\"points\": ") + points)),
+              std::string(": points = ") + points + "; must be a whole number in 1 ... 100");
+  }
   EXPECT_EQ(said(with("\"converged\"", "7")), ": convergence.status = 7; must be text");
   EXPECT_NE(test::rejection([&] { static_cast<void>(read_joint_json(folder.at("none.json"))); }).find("none.json"),
             std::string::npos);
