@@ -214,12 +214,16 @@ void JointFitOptions::validate() const {
 
 namespace {
 
-constexpr double operations_of_point = 2e3;  // of a distributed joint, a line
+/// Of a distributed joint, a line: the holder beside the shank makes it two beams.
+double operations_of_point(const Holder& holder) {
+  constexpr double on_ground = 300.0, in_holder = 1500.0;
+  return holder.segments.empty() && holder.receptances.frfs.empty() ? on_ground : in_holder;
+}
 
 /// Each individual of each generation is a tip FRF.
-void require_affordable_genes(const JointFitOptions& options, Index lines, int points) {
+void require_affordable_genes(const JointFitOptions& options, Index lines, const Joint& frame, const Holder& holder) {
   constexpr double operations_at_mouth = 6.0, bytes_of_individual = 200.0, usual = 50.0;
-  const double operations_of_line = points > 1 ? points * operations_of_point : operations_at_mouth;
+  const double operations_of_line = frame.points > 1 ? frame.points * operations_of_point(holder) : operations_at_mouth;
   const double population = options.population, generations = options.generations;
   require_affordable(
       {.operations = population * generations * (1e3 + operations_of_line * static_cast<double>(lines)),
@@ -233,11 +237,11 @@ void require_affordable_genes(const JointFitOptions& options, Index lines, int p
 }
 
 /// An evolution on a part of the lines, and least squares with derivatives on all of them.
-void require_affordable_points(const Joint& joint, Index lines) {
+void require_affordable_points(const Joint& joint, const Holder& holder, Index lines) {
   constexpr double evaluations_of_part = 1e4, lines_of_part = 256.0, evaluations_of_all = 100.0;
   constexpr double bytes_of_point = 500.0, usual_points = 5.0;
   const double all = static_cast<double>(lines);
-  require_affordable({.operations = joint.points * operations_of_point *
+  require_affordable({.operations = joint.points * operations_of_point(holder) *
                                     (evaluations_of_part * std::min(all, lines_of_part) + evaluations_of_all * all),
                       .bytes = bytes_of_point * joint.points * all,
                       .dominant = {.field = "joint.points",
@@ -259,8 +263,9 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
   JointFitResult result;
   const std::vector<Index> lines = fitted_lines(measured.frequency_hz, frf, result.notes);
   const Eigen::VectorXd frequency_hz = measured.frequency_hz(lines);
-  if (options.method == JointMethod::ga) require_affordable_genes(options, frequency_hz.size(), frame.points);
-  if (options.method == JointMethod::hybrid && frame.points > 1) require_affordable_points(frame, frequency_hz.size());
+  if (options.method == JointMethod::ga) require_affordable_genes(options, frequency_hz.size(), frame, assembly.holder);
+  if (options.method == JointMethod::hybrid && frame.points > 1)
+    require_affordable_points(frame, assembly.holder, frequency_hz.size());
   detail::Base base = detail::base_receptances(assembly.holder, frequency_hz);
   result.notes.insert(result.notes.end(), base.notes.begin(), base.notes.end());
   note_suspects(measured, frf, base, result);
