@@ -65,6 +65,7 @@ it('says what holds the tool', () => {
   const [segment] = assembly!.tool;
   const base = { ...assembly!, joint: null, suspect_hz: [1] };
   expect(assemblyOf({ ...base, holder: { segments: [] } }).holder.kind).toBe('wall');
+  expect(assemblyOf({ ...base, holder: { free: true, segments: [] } }).holder.kind).toBe('free');
   expect(assemblyOf({ ...base, holder: { segments: [segment!, segment!] } }).holder).toMatchObject({ kind: 'segments', segments: [{ part: 'holder', count: 1 }, { count: 2 }] });
   expect(assemblyOf({ ...base, holder: { receptances: 'holder.uff' } })).toMatchObject({ holder: { kind: 'measured', file: 'holder.uff' }, suspect_lines: 1, joint: null });
 });

@@ -177,7 +177,7 @@ export type Joint = Omit<NonNullable<AssemblyDocument['joint']>, 'shank'> & { sh
 export interface Assembly {
   tool: Segment[];
   joint: Joint | null; // null: rigid
-  holder: { kind: 'measured' | 'wall' | 'segments'; segments: Segment[]; file: string };
+  holder: { kind: 'measured' | 'wall' | 'segments' | 'free'; segments: Segment[]; file: string };
   peaks: TipPeak[];
   suspect_lines: number;
   unreliable_lines: number;
@@ -190,7 +190,7 @@ export function assemblyOf({ tool, joint, holder, peaks, suspect_hz, unreliable_
   return {
     tool: named(tool, 'tool'),
     joint: joint && { ...joint, shank: named(joint.shank, 'shank') },
-    holder: { kind: holder.receptances ? 'measured' : segments.length > 0 ? 'segments' : 'wall', segments, file: holder.receptances ?? '' },
+    holder: { kind: holder.free ? 'free' : holder.receptances ? 'measured' : segments.length > 0 ? 'segments' : 'wall', segments, file: holder.receptances ?? '' },
     peaks,
     suspect_lines: suspect_hz.length,
     unreliable_lines: unreliable_hz.length,

@@ -33,8 +33,9 @@ const Schema<coupling::AssemblyFile>& holder_table() {
   const auto drawn = [](const AssemblyFile& file) { return file.assembly.holder.receptances.frfs.empty(); };
   static const Schema<AssemblyFile> table(
       "assembly_holder", "the holder: its segments, or its measured receptances",
-      {key(
-           "free", [](const AssemblyFile& file) { return file.assembly.holder.free; }, "nothing holds the tool"),
+      {where([](const AssemblyFile& file) { return file.assembly.holder.free; },
+             key(
+                 "free", [](const AssemblyFile& file) { return file.assembly.holder.free; }, "nothing holds the tool")),
        where(drawn, key(
                         "segments", [](const AssemblyFile& file) { return file.assembly.holder.segments; },
                         coupling::segment_table(), "from the joint on")),
@@ -91,9 +92,10 @@ const Schema<TipPrediction>& assembly_table() {
            .nullable(),
        key(
            "holder", [](const Tip& tip) { return &tip.file; }, holder_table(), "behind the joint"),
-       key(
-           "accelerometer_mass_kg", [](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg; },
-           "glued to the tip; 0: none"),
+       where([](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg > 0.0; },
+             key(
+                 "accelerometer_mass_kg", [](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg; },
+                 "glued to the tip")),
        key("peaks", &Tip::peaks, tip_peak_table(), "the first of each FRF"), error_key(),
        key(
            "suspect_hz", [](const Tip& tip) { return tip.tip.suspect_hz; },

@@ -164,6 +164,9 @@ describe('the drawing of an assembly', () => {
     const wall = layOut(assembled(tool, 'wall'));
     expect(wall.words).toBe('Tool of 100 mm in 1 segment, joined rigidly to a rigid wall');
     expect(texts(wall.shapes)).toContain('rigid joint');
+    const free = layOut(assembled(tool, 'free'));
+    expect(free.words).toBe('Tool of 100 mm in 1 segment, held by nothing');
+    expect(ofKind(free.shapes, 'wall')).toEqual([]);
     expect(boxes(wall.shapes, 'wall')).toHaveLength(1);
     expect(ofKind(wall.shapes, 'spring')).toEqual([]);
     const measured = layOut(assembled(tool, 'measured', { joint }));

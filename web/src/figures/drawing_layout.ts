@@ -205,6 +205,7 @@ function pointShapes({ pieces, scale, holderX }: Arrangement, { points, insertio
 /** What stands behind the last piece; a shank stands in it where it is not built of segments. */
 function baseShapes({ holderX, endX, highest }: Arrangement, { holder }: Assembly, axis: number): Shape[] {
   const half = 0.5 * highest + 8;
+  if (holder.kind === 'free') return [];
   if (holder.kind === 'measured') {
     return [
       box('measured', holderX, axis - half, endX - holderX + boxWidth, 2 * half),
@@ -318,7 +319,8 @@ function scaleShapes({ scale }: Arrangement, y: number): Shape[] {
 }
 
 /** What the symbol of the joint says. */
-function jointTexts({ joint }: Assembly): string[] {
+function jointTexts({ joint, holder }: Assembly): string[] {
+  if (holder.kind === 'free') return ['free'];
   if (joint === null) return ['rigid joint'];
   const { translational_stiffness_n_per_m: shift, rotational_stiffness_n_m_per_rad: rotation } = joint;
   return [
@@ -347,6 +349,7 @@ function inSegments(segments: Segment[]): string {
 /** The drawing in words, for who cannot see it. */
 function inWords(assembly: Assembly): string {
   const { tool, joint, holder } = assembly;
+  if (holder.kind === 'free') return `Tool ${inSegments(tool)}, held by nothing`;
   const points = distributed(assembly)?.points;
   const joined =
     joint === null ? 'joined rigidly to' : points === undefined ? 'on an elastic joint to' : `in an elastic joint of ${points} points on`;

@@ -115,7 +115,7 @@ export function AssemblySection({ document }: { document: AssemblyDocument }) {
       )}
       <MarkedLines {...assembly} />
       <PeaksTable peaks={assembly.peaks} />
-      <JointPart joint={assembly.joint} />
+      {assembly.holder.kind === 'free' ? <p>Nothing holds the tool: it hangs free.</p> : <JointPart joint={assembly.joint} />}
       <Details summary="Segments one by one">
         <SegmentsTable assembly={assembly} />
       </Details>
