@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "robomill/modal/tip.hpp"
-#include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/joint_load.hpp"
 #include "robomill/robot/pose.hpp"
 
@@ -31,8 +30,8 @@ bool vibrates(const robot::Arm& arm) {
          std::ranges::all_of(arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
 }
 
-modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints) {
-  const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
+modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints, robot::Inertia inertia) {
+  const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell), inertia);
   modal::ModalModel model;
   model.excitations = model.responses = modal::tip_axes();
   model.modes.reserve(found.modes.size());

@@ -5,6 +5,7 @@
 #include "robomill/cell/cell.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/robot/arm.hpp"
+#include "robomill/robot/dynamics.hpp"
 
 namespace robomill::cell {
 
@@ -18,6 +19,7 @@ namespace robomill::cell {
 [[nodiscard]] bool vibrates(const robot::Arm& arm);
 
 /// Modes of the arm at the tool's tip, in B.
-[[nodiscard]] modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints);
+[[nodiscard]] modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints,
+                                          robot::Inertia inertia = robot::Inertia::full);
 
 }  // namespace robomill::cell

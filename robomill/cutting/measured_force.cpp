@@ -19,8 +19,8 @@
 namespace robomill::cutting {
 namespace {
 
-using std::numbers::pi;
 using detail::Run;
+using std::numbers::pi;
 using Measured = std::array<bool, 3>;
 using Revolutions = std::vector<Eigen::Matrix3Xd>;
 
@@ -74,10 +74,12 @@ void check_prediction(const PredictedRevolution& predicted, const Eigen::Matrix3
     throw InvalidInput("predicted", "must have a finite force at each of 8 rotations or more");
   }
   if (force.squaredNorm() == 0.0) {
-    throw InvalidInput("predicted", "has no force: no tooth is in the material", "Compare a cut that engages the cutter");
+    throw InvalidInput("predicted", "has no force: no tooth is in the material",
+                       "Compare a cut that engages the cutter");
   }
   if (without_mean(force).squaredNorm() < 1e-12 * force.squaredNorm()) {
-    throw InvalidInput("predicted", "does not vary over the revolution, so that nothing says how the record lies to it");
+    throw InvalidInput("predicted",
+                       "does not vary over the revolution, so that nothing says how the record lies to it");
   }
 }
 
@@ -94,9 +96,11 @@ Stretch stretch_of(const Eigen::Matrix3Xd& force, double samples, const ForceRec
   if (std::isfinite(options.to_s)) {
     const double per_s = record.sample_rate_hz / samples;
     out.run.begin = static_cast<int>(std::ceil(options.from_s * per_s - 1e-6));
-    out.run.end = static_cast<int>(std::min(std::floor(options.to_s * per_s + 1e-6), std::floor(static_cast<double>(force.cols()) / samples)));
+    out.run.end = static_cast<int>(
+        std::min(std::floor(options.to_s * per_s + 1e-6), std::floor(static_cast<double>(force.cols()) / samples)));
     std::erase_if(out.air, [&](int b) { return b >= out.run.begin && b < out.run.end; });
-    if (out.run.length() < least_revolutions) throw too_few(std::max(out.run.length(), 0), options, "in this stretch of time");
+    if (out.run.length() < least_revolutions)
+      throw too_few(std::max(out.run.length(), 0), options, "in this stretch of time");
   } else if (out.run.length() < least_revolutions) {
     throw too_few(out.run.length(), options, "in the cut");
   }
@@ -112,7 +116,8 @@ Stretch stretch_of(const Eigen::Matrix3Xd& force, double samples, const ForceRec
 Eigen::Vector3d mean_of_air(const Eigen::Matrix3Xd& force, double samples, const std::vector<int>& air) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const int b : air) {
-    sum += force.middleCols(static_cast<Eigen::Index>(b * samples), static_cast<Eigen::Index>(samples)).rowwise().mean();
+    sum +=
+        force.middleCols(static_cast<Eigen::Index>(b * samples), static_cast<Eigen::Index>(samples)).rowwise().mean();
   }
   return air.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(air.size()));
 }
@@ -143,7 +148,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> take_drift(Revolutions& revolutions)
   const auto count = static_cast<Eigen::Index>(revolutions.size());
   Eigen::Matrix3Xd means(3, count);
   for (Eigen::Index b = 0; b < count; ++b) means.col(b) = revolutions[static_cast<std::size_t>(b)].rowwise().mean();
-  const Eigen::RowVectorXd place = Eigen::RowVectorXd::LinSpaced(count, -0.5 * static_cast<double>(count - 1), 0.5 * static_cast<double>(count - 1));
+  const Eigen::RowVectorXd place =
+      Eigen::RowVectorXd::LinSpaced(count, -0.5 * static_cast<double>(count - 1), 0.5 * static_cast<double>(count - 1));
   const Eigen::Vector3d slope = means * place.transpose() / place.squaredNorm();
   const Eigen::Matrix3Xd left = without_mean(means) - slope * place;
   for (Eigen::Index b = 0; b < count; ++b) {
@@ -153,7 +159,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> take_drift(Revolutions& revolutions)
       revolution.col(i) -= slope * (place(b) + static_cast<double>(i) / static_cast<double>(steps) - 0.5);
     }
   }
-  return {slope * static_cast<double>(count), (left.rowwise().squaredNorm() / static_cast<double>(std::max<Eigen::Index>(count - 2, 1))).cwiseSqrt()};
+  return {slope * static_cast<double>(count),
+          (left.rowwise().squaredNorm() / static_cast<double>(std::max<Eigen::Index>(count - 2, 1))).cwiseSqrt()};
 }
 
 /// What differs from tooth to tooth: the revolution less the mean over its teeth.
@@ -236,10 +243,10 @@ void blank(const Measured& measured, MeasuredForce& out) {
     if (measured[static_cast<std::size_t>(axis)]) continue;
     out.force_n.row(axis).setConstant(none);
     out.deviation_n.row(axis).setConstant(none);
-    for (Eigen::Vector3d* of : {&out.zero_n, &out.drift_n, &out.mean_n, &out.peak_n, &out.rms_n, &out.mean_deviation_n,
-                                &out.peak_deviation_n, &out.scatter_n, &out.between_teeth_n, &out.predicted_mean_n,
-                                &out.predicted_peak_n, &out.predicted_rms_n, &out.error_n, &out.error_ratio,
-                                &out.shape_error_n, &out.shape_error_ratio}) {
+    for (Eigen::Vector3d* of :
+         {&out.zero_n, &out.drift_n, &out.mean_n, &out.peak_n, &out.rms_n, &out.mean_deviation_n, &out.peak_deviation_n,
+          &out.scatter_n, &out.between_teeth_n, &out.predicted_mean_n, &out.predicted_peak_n, &out.predicted_rms_n,
+          &out.error_n, &out.error_ratio, &out.shape_error_n, &out.shape_error_ratio}) {
       (*of)(axis) = none;
     }
     for (ForceHarmonic& harmonic : out.harmonics) harmonic.measured_n(axis) = harmonic.predicted_n(axis) = none;
@@ -252,15 +259,16 @@ void check_signal(const MeasuredForce& found, const Eigen::Matrix3Xd& predicted)
   const double noise = found.scatter_n.squaredNorm() / found.revolutions;
   if (varies < least_variance_over_noise * noise) {
     throw InvalidInput("record",
-                       fmt::format("repeats nothing with the rotation: its mean revolution varies by {:.3g} N, which noise alone would give it",
+                       fmt::format("repeats nothing with the rotation: its mean revolution varies by {:.3g} N, which "
+                                   "noise alone would give it",
                                    std::sqrt(varies)),
                        "No tooth is in the cut, or the speed is another one");
   }
   const double expected = without_mean(predicted).norm() / std::sqrt(static_cast<double>(predicted.cols()));
   if (std::sqrt(varies) < least_share_of_prediction * expected) {
     throw InvalidInput("record",
-                       fmt::format("varies by {:.3g} N over a revolution, less than {:.0f} % of the predicted {:.3g} N", std::sqrt(varies),
-                                   100.0 * least_share_of_prediction, expected),
+                       fmt::format("varies by {:.3g} N over a revolution, less than {:.0f} % of the predicted {:.3g} N",
+                                   std::sqrt(varies), 100.0 * least_share_of_prediction, expected),
                        "Is the tool in air, or are these kN?");
   }
 }
@@ -268,11 +276,16 @@ void check_signal(const MeasuredForce& found, const Eigen::Matrix3Xd& predicted)
 void add_notes(const MeasuredForceOptions& options, int teeth, MeasuredForce& out) {
   const double change = out.spindle_speed_rad_per_s / options.spindle_speed_rad_per_s - 1.0;
   if (options.speed_tolerance > 0.0 && std::abs(change) > 0.98 * options.speed_tolerance) {
-    out.notes.push_back(fmt::format("The record's speed lies {:+.2f} % from the given one, at the border of what was searched: the given one may be wrong.", 100.0 * change));
+    out.notes.push_back(
+        fmt::format("The record's speed lies {:+.2f} % from the given one, at the border of what was searched: the "
+                    "given one may be wrong.",
+                    100.0 * change));
   }
   const double tooth_rad = 2.0 * pi / teeth;
   if (out.wander_rad > 0.05 * tooth_rad) {
-    out.notes.push_back(fmt::format("Single revolutions lie {:.2g}° apart in angle: the speed wanders, and the mean revolution is smoothed by it.", out.wander_rad / units::deg));
+    out.notes.push_back(fmt::format(
+        "Single revolutions lie {:.2g}° apart in angle: the speed wanders, and the mean revolution is smoothed by it.",
+        out.wander_rad / units::deg));
   }
 }
 
@@ -298,7 +311,8 @@ MeasuredForce compare_forces(const ForceRecord& record, const PredictedRevolutio
   const double samples = 2.0 * pi * record.sample_rate_hz / options.spindle_speed_rad_per_s;
   if (samples < least_samples_a_tooth * predicted.teeth) {
     throw InvalidInput("sample_rate_hz", record.sample_rate_hz, "Hz",
-                       fmt::format("must give at least {:.0f} samples a tooth; it gives {:.2g}", least_samples_a_tooth, samples / predicted.teeth));
+                       fmt::format("must give at least {:.0f} samples a tooth; it gives {:.2g}", least_samples_a_tooth,
+                                   samples / predicted.teeth));
   }
   MeasuredForce out;
   out.sample_rate_hz = record.sample_rate_hz;
@@ -307,7 +321,8 @@ MeasuredForce compare_forces(const ForceRecord& record, const PredictedRevolutio
 
   const Stretch at = stretch_of(force, samples, record, options);
   const auto begin = static_cast<Eigen::Index>(at.run.begin * samples);
-  const auto length = std::min(static_cast<Eigen::Index>(std::ceil(at.run.length() * samples)) + 4, force.cols() - begin);
+  const auto length =
+      std::min(static_cast<Eigen::Index>(std::ceil(at.run.length() * samples)) + 4, force.cols() - begin);
   const Eigen::Matrix3Xd stretch = force.middleCols(begin, length);
   const Speed speed = refined(stretch, 1.0 / samples, predicted.teeth, options.speed_tolerance);
   const double period_rad = predicted.teeth_alike ? 2.0 * pi / predicted.teeth : 2.0 * pi;

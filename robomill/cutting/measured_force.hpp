@@ -56,20 +56,20 @@ struct MeasuredForce {
 
   double spindle_speed_rad_per_s = 0.0;            ///< that of the record
   double spindle_speed_deviation_rad_per_s = 0.0;  ///< standard deviation
-  double wander_rad = 0.0;            ///< standard deviation of the angle of a single revolution
+  double wander_rad = 0.0;                         ///< standard deviation of the angle of a single revolution
   double offset_deviation_rad = 0.0;  ///< … and of the mean one: at from_s tooth 0 stood at the prediction's first step
 
   int air_revolutions = 0;                           ///< whose mean was taken off; 0: forces are as recorded
   Eigen::Vector3d zero_n = Eigen::Vector3d::Zero();  ///< that mean
-  Eigen::Vector3d drift_n;                           ///< of a revolution's mean from from_s to to_s; taken out about its middle
+  Eigen::Vector3d drift_n;  ///< of a revolution's mean from from_s to to_s; taken out about its middle
 
   Eigen::VectorXd rotation_rad;  ///< length m, those of the prediction
   Eigen::Matrix3Xd force_n;      ///< 3 x m: mean revolution
   Eigen::Matrix3Xd deviation_n;  ///< 3 x m: standard deviation of single revolutions about it
 
-  Eigen::Vector3d mean_n, peak_n, rms_n;                                ///< of the mean revolution, as in ForceSummary
-  Eigen::Vector3d mean_deviation_n, peak_deviation_n;                   ///< of single revolutions
-  Eigen::Vector3d scatter_n;                                            ///< root mean square of deviation_n
+  Eigen::Vector3d mean_n, peak_n, rms_n;               ///< of the mean revolution, as in ForceSummary
+  Eigen::Vector3d mean_deviation_n, peak_deviation_n;  ///< of single revolutions
+  Eigen::Vector3d scatter_n;                           ///< root mean square of deviation_n
   Eigen::Vector3d between_teeth_n;  ///< root mean square of what differs from tooth to tooth in the mean revolution
   Eigen::Vector3d predicted_mean_n, predicted_peak_n, predicted_rms_n;  ///< of what it was compared with
 
@@ -89,10 +89,10 @@ struct MeasuredForce {
 
 /// Cuts the record into revolutions, averages them and lays the prediction over them.
 ///
-/// The stretch in the cut is the longest run of revolutions whose force varies by more than half of the strongest (their
-/// 90 % quantile), 200 revolutions at most, those in its middle; five revolutions or more that vary by less than a
-/// tenth of it are air, whose mean is taken off. The speed maximises Σ_k |X(kΩ)|² over the harmonics of rotation, X the
-/// transform of the stretch, and is then the slope of the revolutions' angles, which gives its deviation, residuals
+/// The stretch in the cut is the longest run of revolutions whose force varies by more than half of the strongest
+/// (their 90 % quantile), 200 revolutions at most, those in its middle; five revolutions or more that vary by less than
+/// a tenth of it are air, whose mean is taken off. The speed maximises Σ_k |X(kΩ)|² over the harmonics of rotation, X
+/// the transform of the stretch, and is then the slope of the revolutions' angles, which gives its deviation, residuals
 /// taken as independent. The offset maximises the correlation with the prediction.
 /// @throws InvalidInput naming the member, or "record": fewer than five revolutions, fewer than four samples a tooth,
 ///     values that are not finite, nothing that repeats with the rotation (air), a force below 2 % of the predicted

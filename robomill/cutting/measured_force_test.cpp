@@ -69,7 +69,8 @@ MeasuredForce compared(const CuttingForce& force, const Recording& how, std::uin
   return compare_forces(record_of(force, how, seed), predicted(force), {.spindle_speed_rad_per_s = 600.0});
 }
 
-// A record made of the prediction itself: nothing is left but what a cubic through 105 samples a revolution and the means over steps lose, some 0.3 %.
+// A record made of the prediction itself: nothing is left but what a cubic through 105 samples a revolution and the
+// means over steps lose, some 0.3 %.
 TEST(MeasuredForce, OfThePredictionItself) {
   const CuttingForce force = cut();
   const MeasuredForce m = compared(force, {.speed_rad_per_s = 603.1, .offset_rad = 1.234});
@@ -99,7 +100,8 @@ TEST(MeasuredForce, DeviationsAreThoseOfTheNoise) {
   const int runs = seeds(200);
   double pulls = 0.0;
   for (int k = 0; k < runs; ++k) {
-    const MeasuredForce m = compared(force, {.speed_rad_per_s = 597.0, .offset_rad = 0.1 * k, .noise_n = 10.0}, 1000 + static_cast<std::uint64_t>(k));
+    const MeasuredForce m = compared(force, {.speed_rad_per_s = 597.0, .offset_rad = 0.1 * k, .noise_n = 10.0},
+                                     1000 + static_cast<std::uint64_t>(k));
     // A cubic through four samples takes some of the noise away, at most half of its variance.
     EXPECT_GT(m.scatter_n.minCoeff(), 7.0);
     EXPECT_LT(m.scatter_n.maxCoeff(), 10.5);
@@ -130,7 +132,8 @@ TEST(MeasuredForce, OfAStretchThatDrifts) {
   const CuttingForce force = cut();
   const Eigen::Vector3d drift(100.0, -50.0, 0.0);
   const ForceRecord record = record_of(force, {.seconds = 1.0, .drift_n_per_s = drift});
-  const MeasuredForce m = compare_forces(record, predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.3, .to_s = 0.7});
+  const MeasuredForce m =
+      compare_forces(record, predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.3, .to_s = 0.7});
   EXPECT_GE(m.from_s, 0.3);
   EXPECT_LE(m.to_s, 0.71);
   const double seconds = m.to_s - m.from_s;
@@ -144,11 +147,13 @@ TEST(MeasuredForce, OfAStretchThatDrifts) {
 // Runout of the recording that the prediction lacks is what differs from tooth to tooth.
 TEST(MeasuredForce, TellsTeethApart) {
   const CuttingForce straight = cut(), runout = cut(20e-6);
-  const MeasuredForce without = compare_forces(record_of(runout, {.offset_rad = 4.0}), predicted(straight), {.spindle_speed_rad_per_s = 600.0});
+  const MeasuredForce without =
+      compare_forces(record_of(runout, {.offset_rad = 4.0}), predicted(straight), {.spindle_speed_rad_per_s = 600.0});
   EXPECT_GT(without.between_teeth_n.norm(), 0.1 * straight.rms_n.norm());
   EXPECT_LT(without.between_teeth_n.norm(), 1.01 * without.shape_error_n.norm());
   // With it the offset is that of the tooth: both halves of the revolution fit.
-  const MeasuredForce with = compare_forces(record_of(runout, {.offset_rad = 4.0}), predicted(runout, false), {.spindle_speed_rad_per_s = 600.0});
+  const MeasuredForce with = compare_forces(record_of(runout, {.offset_rad = 4.0}), predicted(runout, false),
+                                            {.spindle_speed_rad_per_s = 600.0});
   EXPECT_LT(with.error_ratio_of_all, 3e-3);
   const double turns = (600.0 * with.from_s + 4.0) / (2.0 * pi);
   EXPECT_NEAR(turns, std::round(turns), 1e-3);
@@ -187,7 +192,8 @@ TEST(MeasuredForce, RejectsWhatIsNoCut) {
   CuttingForce none = force;
   none.force_n.setZero();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_NE(says(record_of(none, {.noise_n = 5.0}, seed)).find("repeats nothing with the rotation"), std::string::npos);
+    EXPECT_NE(says(record_of(none, {.noise_n = 5.0}, seed)).find("repeats nothing with the rotation"),
+              std::string::npos);
   }
   CuttingForce kilo = force;
   kilo.force_n *= 1e-3;
@@ -212,7 +218,8 @@ TEST(MeasuredForce, RejectsWhatIsNoCut) {
 // A speed at the border of what was searched is noted, one beyond it too.
 TEST(MeasuredForce, NotesASpeedThatIsNotTheGivenOne) {
   const CuttingForce force = cut();
-  const MeasuredForce m = compare_forces(record_of(force, {.speed_rad_per_s = 606.5}), predicted(force), {.spindle_speed_rad_per_s = 600.0});
+  const MeasuredForce m = compare_forces(record_of(force, {.speed_rad_per_s = 606.5}), predicted(force),
+                                         {.spindle_speed_rad_per_s = 600.0});
   ASSERT_FALSE(m.notes.empty());
   EXPECT_NE(m.notes.front().find("at the border"), std::string::npos);
 }

@@ -18,8 +18,9 @@ using Complex = std::complex<double>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// L of M = L Lᵀ.
-Eigen::MatrixXd mass_factor(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
-  const Eigen::MatrixXd mass = mass_matrix(arm, position);
+Eigen::MatrixXd mass_factor(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, Inertia inertia) {
+  Eigen::MatrixXd mass = mass_matrix(arm, position);
+  if (inertia == Inertia::diagonal) mass = Eigen::MatrixXd(mass.diagonal().asDiagonal());
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
     if (mass(i, i) > 0.0) continue;
     throw InvalidInput("joints[" + std::to_string(i + 1) + "].link.mass_kg", 0.0, "kg",
@@ -115,10 +116,10 @@ Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::Vector
   return out;
 }
 
-ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
-                     const Eigen::Vector3d& point_m) {
+ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m,
+                     Inertia inertia) {
   static_cast<void>(stiffness(arm, position, point_m));  // checks what is given
-  const Eigen::MatrixXd factor = mass_factor(arm, position);
+  const Eigen::MatrixXd factor = mass_factor(arm, position, inertia);
   const Jacobian jac = jacobian(arm, position, point_m);
   Eigen::MatrixXd joint = Eigen::MatrixXd::Zero(arm.size(), arm.size()), damping = joint;
   for (Eigen::Index i = 0; i < arm.size(); ++i) {

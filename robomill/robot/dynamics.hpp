@@ -34,12 +34,18 @@ struct ToolModes {
   std::vector<OverdampedMode> overdamped = {};  ///< in pairs, where a joint is damped more than critically
 };
 
+/// What of the joint-space mass matrix counts.
+enum class Inertia {
+  full,
+  diagonal  ///< the joints' own, without what couples them: M = J⁻ᵀ I_θ J⁻¹ of [BallEndRobot] with a diagonal I_θ
+};
+
 /// Modes of M q̈ + C q̇ + Kθ q = Jᵀ F seen at a point: C the joints' damping, of any kind, by the eigenvalues of the
 /// state-space form. H, 6 x 6, is translation (m) and rotation (rad) of the point due to force (N) and moment (N m), in
 /// B. Rows 1 to 3 of right and left in sqrt(s/kg), 4 to 6 in rad sqrt(s/kg)/m. H is symmetric and left = right.
 /// @param point_m  in the flange frame
 /// @throws InvalidInput as stiffness(), or if M is not positive definite (a joint moves no mass)
 [[nodiscard]] ROBOMILL_API ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
-                                                const Eigen::Vector3d& point_m);
+                                                const Eigen::Vector3d& point_m, Inertia inertia = Inertia::full);
 
 }  // namespace robomill::robot

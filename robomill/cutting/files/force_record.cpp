@@ -23,11 +23,13 @@ char direction_of(std::string_view name) {
   std::string word;
   for (const char c : name) {
     if (c == '[' || c == '(' || c == '/') break;
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   if (word.ends_with("n") && word.size() > 2) word.pop_back();  // fx_n
   for (const std::string_view before : {"", "f", "force", "kraft"}) {
-    if (word.size() == before.size() + 1 && word.starts_with(before) && std::string_view("xyz").find(word.back()) != std::string_view::npos) {
+    if (word.size() == before.size() + 1 && word.starts_with(before) &&
+        std::string_view("xyz").find(word.back()) != std::string_view::npos) {
       return word.back();
     }
   }
@@ -52,13 +54,15 @@ std::vector<std::string> found_channels(const io::Record& record) {
     if (direction == 0) continue;
     std::string& channel = out[static_cast<std::size_t>(direction - 'x')];
     if (channel != not_measured) {
-      throw InvalidInput("channels", fmt::format("must say which column is {}: {} and {} may be", direction, channel, record.names[i]),
-                         columns_of(record));
+      throw InvalidInput(
+          "channels", fmt::format("must say which column is {}: {} and {} may be", direction, channel, record.names[i]),
+          columns_of(record));
     }
     channel = record.names[i];
   }
   if (std::ranges::all_of(out, [](const std::string& channel) { return channel == not_measured; })) {
-    throw InvalidInput("channels", "must name the columns of x, y and z: no name of this record says them", columns_of(record));
+    throw InvalidInput("channels", "must name the columns of x, y and z: no name of this record says them",
+                       columns_of(record));
   }
   return out;
 }
@@ -100,9 +104,10 @@ ForceRecordFile read_force_record(const std::filesystem::path& path, const Force
   }
   const std::vector<std::string> channels = options.channels.empty() ? found_channels(record) : options.channels;
   if (options.channels.empty()) {
-    out.assumed.push_back({.what = "Axes of the force record",
-                           .taken = fmt::format("{} are x along the feed, y to its left and z to the spindle", joined(channels)),
-                           .key = "--channels"});
+    out.assumed.push_back(
+        {.what = "Axes of the force record",
+         .taken = fmt::format("{} are x along the feed, y to its left and z to the spindle", joined(channels)),
+         .key = "--channels"});
   }
   std::vector<std::string> without_unit;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -125,7 +130,10 @@ ForceRecordFile read_force_record(const std::filesystem::path& path, const Force
   }
   if (out.record.force_n.cols() == 0) throw InvalidInput("channels", "must name a column: no component is left");
   if (!without_unit.empty()) {
-    out.assumed.push_back({.what = "Unit of " + joined(without_unit), .taken = "N", .key = "the record's row of units", .file = path.filename().string()});
+    out.assumed.push_back({.what = "Unit of " + joined(without_unit),
+                           .taken = "N",
+                           .key = "the record's row of units",
+                           .file = path.filename().string()});
   }
   return out;
 }

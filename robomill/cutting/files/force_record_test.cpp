@@ -21,7 +21,8 @@ const std::string rows = "0,1,-2,3\n0.0001,4,5,6\n0.0002,7,8,9\n";
 
 TEST(ForceRecord, FindsComponentsByName) {
   const Folder folder;
-  for (const char* head : {"time_s,fx_n,fy_n,fz_n\n", "Time [s],Fx [N],Fy [N],Fz [N]\n", "t,Force X,Force Y,Force Z\n", "time_s,x,y,z\n"}) {
+  for (const char* head : {"time_s,fx_n,fy_n,fz_n\n", "Time [s],Fx [N],Fy [N],Fz [N]\n", "t,Force X,Force Y,Force Z\n",
+                           "time_s,x,y,z\n"}) {
     const ForceRecordFile file = read_force_record(folder.file("a.csv", head + rows));
     EXPECT_EQ(file.record.force_n.col(0), Eigen::Vector3d(1.0, -2.0, 3.0)) << head;
     EXPECT_NEAR(file.record.sample_rate_hz, 10000.0, 1e-6);
@@ -72,8 +73,10 @@ TEST(ForceRecord, RejectsWhatIsNoForce) {
   EXPECT_NE(says("time_s,Fx,Force x,Fz\n" + rows).find("Fx and Force x may be"), std::string::npos);
   EXPECT_NE(says("Fx,Fy,Fz\n1,2,3\n4,5,6\n").find("sample_rate_hz"), std::string::npos);
   EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"Fx", "Fy"}}).find("must be three"), std::string::npos);
-  EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"Fx", "Fy", "Mz"}}).find("has no column Mz"), std::string::npos);
-  EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"none", "none", "none"}}).find("no component is left"), std::string::npos);
+  EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"Fx", "Fy", "Mz"}}).find("has no column Mz"),
+            std::string::npos);
+  EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"none", "none", "none"}}).find("no component is left"),
+            std::string::npos);
 }
 
 }  // namespace force_record_test

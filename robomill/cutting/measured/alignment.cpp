@@ -51,7 +51,8 @@ double Correlation::sum(const SignedAxes& axes, double offset_rad) const {
 }
 
 std::pair<double, double> Correlation::best(double period_rad, const SignedAxes& axes) const {
-  const int count = std::max(16, static_cast<int>(std::ceil(4.0 * static_cast<double>(products_.size()) * period_rad / (2.0 * pi))));
+  const int count =
+      std::max(16, static_cast<int>(std::ceil(4.0 * static_cast<double>(products_.size()) * period_rad / (2.0 * pi))));
   const double step = period_rad / count;
   double best = -HUGE_VAL, at = 0.0;
   for (int i = 0; i < count; ++i) {

@@ -122,7 +122,8 @@ std::vector<Eigen::Matrix3Xd> revolutions_at(const Eigen::Matrix3Xd& force_n, do
       // Lagrange through the samples at -1, 0, 1, 2.
       const double a = -s * (s - 1.0) * (s - 2.0) / 6.0, b = (s + 1.0) * (s - 1.0) * (s - 2.0) / 2.0;
       const double c = -(s + 1.0) * s * (s - 2.0) / 2.0, d = (s + 1.0) * s * (s - 1.0) / 6.0;
-      revolution.col(i) = a * force_n.col(at - 1) + b * force_n.col(at) + c * force_n.col(at + 1) + d * force_n.col(at + 2);
+      revolution.col(i) =
+          a * force_n.col(at - 1) + b * force_n.col(at) + c * force_n.col(at + 1) + d * force_n.col(at + 2);
     }
   }
   return out;

@@ -18,7 +18,7 @@ struct Run {
 
 /// What is cut and what is air: by the share of the 90 % quantile of the variations.
 struct CutAndAir {
-  Run cut;               ///< the longest run above half of it, without its first and last revolution where the record goes on
+  Run cut;  ///< the longest run above half of it, without its first and last revolution where the record goes on
   std::vector<int> air;  ///< revolutions below a tenth of it
 };
 [[nodiscard]] CutAndAir find_cut(const std::vector<double>& variation);
