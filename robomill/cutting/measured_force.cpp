@@ -220,7 +220,7 @@ void add_harmonics(const Eigen::Matrix3Xd& predicted, MeasuredForce& out) {
 }
 
 void find_better_axes(double period_rad, const Eigen::Matrix3Xd& predicted, MeasuredForce& out) {
-  constexpr double worth_it = 0.3, better = 0.6;
+  constexpr double worth_it = 0.3, better = 0.75;
   if (out.error_ratio_of_all < worth_it) return;
   const Eigen::Matrix3Xd& measured = out.force_n;
   const detail::Correlation correlation(measured, predicted);

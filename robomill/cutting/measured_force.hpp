@@ -80,7 +80,7 @@ struct MeasuredForce {
 
   std::vector<ForceHarmonic> harmonics;  ///< the first ones; a resonance of the dynamometer stands out in them
 
-  /// Axes with which the error of all components is below 0.6 of that with the given ones; only where all three were
+  /// Axes with which the error of all components is below 0.75 of that with the given ones; only where all three were
   /// measured and the given error is above 0.3 of the measured force.
   std::optional<SignedAxes> better_axes;
   double better_axes_error_ratio = 0.0, error_ratio_of_all = 0.0;  ///< of all components together, means included

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "robomill/cell/files/cell_toml.hpp"
+#include "robomill/io/toml/file.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 
 namespace robomill::jobs {
@@ -50,6 +51,24 @@ process::ForcesResult run_forces_along(const process::ForcesFile& forces, const 
     return process::forces_along(std::move(cut), program::read_program(program, reading.value_or(of_cell)), program,
                                  std::move(cell), run, progress);
   });
+}
+
+process::ForcesResult run_measured_forces(const std::filesystem::path& forces, const MeasuredForceJob& job,
+                                          const std::filesystem::path& cell, Progress& progress) {
+  process::ForcesFile file = process::read_forces(forces, process::ForcesJob::revolution);
+  if (!cell.empty()) file.cell = cell;
+  const cutting::ForceRecordFile record = cutting::read_force_record(job.record, job.reading);
+  process::ForcesResult result = run_forces(file, {}, std::nullopt, progress);
+  if (!file.document->has("force_on")) result.assumed.push_back(measured_acts_on_tool(file));
+  process::compare_with_record(result, record, job.stretch);
+  return result;
+}
+
+Assumption measured_acts_on_tool(const process::ForcesFile& file) {
+  return {.what = "What the measured force acts on",
+          .taken = "the tool; a dynamometer under the workpiece measures the force on the workpiece",
+          .key = "force_on",
+          .file = file.path.filename().string()};
 }
 
 }  // namespace robomill::jobs

@@ -5,8 +5,10 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/cell/cell.hpp"
+#include "robomill/cutting/files/force_record.hpp"
 #include "robomill/process/files/forces_toml.hpp"
 #include "robomill/process/forces.hpp"
+#include "robomill/process/measured.hpp"
 #include "robomill/program/files/program_files.hpp"
 
 // Method: robomill/process/README.md, "Forces (`forces.hpp`)"
@@ -33,5 +35,21 @@ namespace robomill::jobs {
     const process::ForcesFile& forces, const std::filesystem::path& program, std::optional<cell::Cell> cell,
     const process::ProgramRun& run, const std::optional<program::ProgramReading>& reading = {},
     Progress& progress = Progress::none());
+
+/// A force record that a revolution is compared with.
+struct MeasuredForceJob {
+  std::filesystem::path record;
+  cutting::ForceRecordOptions reading = {};
+  process::RecordStretch stretch = {};
+};
+/// Forces over one revolution beside a record.
+/// @throws InvalidInput as run_forces, read_force_record and compare_with_record
+[[nodiscard]] ROBOMILL_API process::ForcesResult run_measured_forces(const std::filesystem::path& forces,
+                                                                     const MeasuredForceJob& job,
+                                                                     const std::filesystem::path& cell = {},
+                                                                     Progress& progress = Progress::none());
+
+/// What is assumed of a record where forces.toml has no force_on.
+[[nodiscard]] ROBOMILL_API Assumption measured_acts_on_tool(const process::ForcesFile& file);
 
 }  // namespace robomill::jobs

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cell/arm_modes.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/outputs.hpp"
@@ -54,6 +55,41 @@ TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
   EXPECT_LT(r.deflected.cut.axial_depth_m, 1e-3);
   EXPECT_TRUE(r.posture->compliance_m_per_n.isApprox(r.posture->compliance_m_per_n.transpose(), 1e-2));
   EXPECT_FALSE(r.spindle_rotation) << "a UR5e has no spherical wrist";
+}
+
+// Beside it stands the cut as if the arm were rigid: that of a file without a robot.
+TEST(RunForces, OfARobotThatDoesNotDeflect) {
+  const Folder folder;
+  std::string text = io::read_file(examples / "ball-end-ur5e" / "cut-1.toml");
+  const process::ForcesResult bent = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
+  const process::ForcesResult alone =
+      run_forces(folder.file("alone.toml", text.substr(0, text.find("[robot]"))), {}, {});
+  const auto with = nlohmann::json::parse(process::forces_json(bent));
+  const auto without = nlohmann::json::parse(process::forces_json(alone));
+  EXPECT_EQ(with["rigid_mean_n"], without["mean_n"]);
+  EXPECT_EQ(with["rigid_peak_n"], without["peak_n"]);
+  EXPECT_TRUE(without["rigid_mean_n"].is_null());
+  EXPECT_NE(process::summary(bent).find("mean, rigid"), std::string::npos);
+}
+
+// The joints' own inertia alone gives other modes of the arm.
+TEST(RunForces, OfTheJointsOwnInertia) {
+  const Folder folder;
+  const std::filesystem::path from = examples / "ball-end-ur5e";
+  const std::string text = io::read_file(from / "cut-1.toml");
+  folder.file("cell.toml", io::read_file(from / "cell.toml"));
+  const auto inertia = [&](const std::string& more) {
+    return process::read_forces(folder.file("cut.toml", text + more)).robot_inertia;
+  };
+  EXPECT_EQ(inertia(""), robot::Inertia::full);
+  EXPECT_EQ(inertia("inertia = \"full\"\n"), robot::Inertia::full);
+  EXPECT_EQ(inertia("inertia = \"diagonal\"\n"), robot::Inertia::diagonal);
+  EXPECT_NE(rejection([&] { (void)inertia("inertia = \"half\"\n"); }).find("robot.inertia"), std::string::npos);
+  const robot::Cell arm = cell::read_cell(from / "cell.toml").robot;
+  const Eigen::VectorXd joints = Eigen::VectorXd::Constant(6, 0.7);
+  const modal::ModalModel full = cell::arm_modes(arm, joints),
+                          own = cell::arm_modes(arm, joints, robot::Inertia::diagonal);
+  EXPECT_GT(std::abs(full.modes[0].frequency_hz / own.modes[0].frequency_hz - 1.0), 1e-3);
 }
 
 TEST(RunForces, OfFilesThatWereRead) {

@@ -26,6 +26,7 @@ struct LobesJobResult;
 struct ModesResult;
 struct PlanResult;
 struct SimulateResult;
+struct SignalCoefficientsResult;
 struct StiffnessResult;
 struct TipPrediction;
 struct ToolsResult;
@@ -41,6 +42,7 @@ enum class Document {
   simulation,
   forces,
   coefficients,
+  signal_coefficients,
   stiffness,
   cell_check,
   calibration,
@@ -62,6 +64,7 @@ void require_output(Document document, const std::filesystem::path& path);
 [[nodiscard]] std::string document(const SimulateResult& result, io::Format format);
 [[nodiscard]] std::string document(const process::ForcesResult& result, io::Format format);
 [[nodiscard]] std::string document(const CoefficientsResult& result, io::Format format);
+[[nodiscard]] std::string document(const SignalCoefficientsResult& result, io::Format format);
 [[nodiscard]] std::string document(const StiffnessResult& result, io::Format format);
 [[nodiscard]] std::string document(const cell::CellCheck& result, io::Format format);
 
@@ -94,6 +97,7 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] std::string shortfall(const JointResult& result);
 [[nodiscard]] std::string shortfall(const SimulateResult& result);
 [[nodiscard]] std::string shortfall(const CoefficientsResult& result);
+[[nodiscard]] std::string shortfall(const SignalCoefficientsResult& result);
 [[nodiscard]] std::string shortfall(const StiffnessResult& result);
 [[nodiscard]] std::string shortfall(const cell::CellCheck& result);
 // Whatever they find is an answer.
@@ -126,6 +130,7 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] std::string summary(const ExplainResult& result);
 [[nodiscard]] std::string summary(const SimulateResult& result);
 [[nodiscard]] std::string summary(const CoefficientsResult& result);
+[[nodiscard]] std::string summary(const SignalCoefficientsResult& result);
 [[nodiscard]] std::string summary(const StiffnessResult& result);
 
 /// "2026-07-31 12:05 UTC, robomill 0.1.0".
@@ -143,6 +148,7 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] page::Report page_of(const SimulateResult& result);
 [[nodiscard]] page::Report page_of(const process::ForcesResult& result);
 [[nodiscard]] page::Report page_of(const CoefficientsResult& result);
+[[nodiscard]] page::Report page_of(const SignalCoefficientsResult& result);
 [[nodiscard]] page::Report page_of(const StiffnessResult& result);
 [[nodiscard]] page::Report page_of(const cell::CellCheck& result);
 /// With curves where the job recorded them.

@@ -11,6 +11,7 @@
 #include "robomill/cutting/force.hpp"
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/robot/dynamics.hpp"
 
 // Method: robomill/process/README.md, "Forces (`forces.hpp`)"
 
@@ -29,6 +30,7 @@ struct Cut {
   std::vector<double> joints_rad = {};                        ///< the posture of a single cut; empty: no robot
   Eigen::Vector3d feed_direction = Eigen::Vector3d::UnitX();  ///< of a single cut, in W
   bool robot_vibrates = false;                                ///< its joints and masses take part in the vibration
+  robot::Inertia robot_inertia = robot::Inertia::full;        ///< … with this of its masses
   double feed_direction_rad = 0.0;                            ///< in the axes of the structures
   modal::ModalModel dynamics = {}, workpiece_dynamics = {};   ///< what vibrates; no modes where absent
   std::optional<cutting::Stock> stock = {};                   ///< none: a box around the program

@@ -84,7 +84,8 @@ modal::TipModes robot_modes(const Cut& cut, const robot::Cell& cell, const Eigen
     throw reject(cut, "robot.vibration", "needs the masses of the links and the damping of the joints",
                  "The cell says them as links and joint_damping_n_m_s_per_rad");
   }
-  return modal::turned(modal::tip_modes(cell::arm_modes(cell, joints), {}, 0.0), base_from_feed.transpose());
+  return modal::turned(modal::tip_modes(cell::arm_modes(cell, joints, cut.robot_inertia), {}, 0.0),
+                       base_from_feed.transpose());
 }
 
 /// What vibrates, in F: tool, robot, and the part with its fixture. Each moves against the next, so receptances add.
@@ -159,6 +160,7 @@ void run_revolution(ForcesResult& result, Progress& progress) {
   const robot::Cell* cell = result.cell && !cut.joints_rad.empty() ? &result.cell->robot : nullptr;
   out.deflected = deflected(Eigen::Matrix3d::Zero());
   if (cell != nullptr) {
+    out.rigid = out.deflected.force;
     joints = joints_of(cut, *cell);
     // The load changes the stiffness a little: once more with what the first pass gave.
     for (int pass = 0; pass < 2; ++pass) {

@@ -15,6 +15,7 @@
 #include "robomill/cutting/static_deflection.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/process/cut.hpp"
+#include "robomill/process/measured.hpp"
 #include "robomill/program/program.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/pose.hpp"
@@ -36,6 +37,7 @@ struct CutPosture {
 /// Forces over one revolution.
 struct RevolutionForces {
   cutting::StaticDeflection deflected;
+  std::optional<cutting::ForceSummary> rigid = {};  ///< with a robot: as if it did not deflect
   std::optional<CutPosture> posture = {};
   std::optional<robot::Redundancy> spindle_rotation = {};  ///< with a robot: what turning it about the tool does
   std::optional<simulation::Simulation> vibration = {};    ///< with dynamics
@@ -83,6 +85,7 @@ struct ForcesResult {
   Cut cut;
   std::optional<cell::Cell> cell = {};
   std::optional<RevolutionForces> revolution = {};
+  std::optional<MeasuredRevolution> measured = {};  ///< beside the revolution
   std::optional<ProgramForces> program = {};
   std::optional<decision::SpindleCapacity> spindle = {};  ///< what it has along the program, where that is known
   std::vector<std::string> warnings = {}, notes = {};

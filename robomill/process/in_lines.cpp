@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "robomill/base/printable.hpp"
@@ -40,6 +41,7 @@ void add_revolution(std::string& out, const RevolutionForces& revolution, bool o
   append(out, "{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
          on_workpiece ? "workpiece" : "tool");
   add_vector(out, "mean", sign * force.mean_n);
+  if (revolution.rigid) add_vector(out, "mean, rigid", sign * revolution.rigid->mean_n);
   add_vector(out, "peak", sign * force.peak_n);
   add_vector(out, "rms", force.rms_n);
   append(out, "torque       mean {:.4g}, peak {:.4g} N·m\n", force.mean_torque_n_m, force.peak_torque_n_m);
@@ -55,6 +57,33 @@ void add_revolution(std::string& out, const RevolutionForces& revolution, bool o
            revolution.spindle_rotation->best.error_m.norm() / units::um);
   }
   if (revolution.vibration) add_vibration(out, *revolution.vibration);
+}
+
+/// "12.3": a dash for what was not measured.
+std::string or_dash(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "–";
+}
+
+void add_measured(std::string& out, const MeasuredRevolution& measured) {
+  const cutting::MeasuredForce& m = measured.force;
+  append(out, "measured     {}: {} revolutions from {:.4g} to {:.4g} s; {:.2f} ± {:.2g} rpm\n",
+         printable(measured.path.filename().string()), m.revolutions, m.from_s, m.to_s,
+         m.spindle_speed_rad_per_s / units::rpm, m.spindle_speed_deviation_rad_per_s / units::rpm);
+  const auto row = [&out](const char* label, const Eigen::Vector3d& v, const char* unit, double factor = 1.0) {
+    append(out, "  {:<18} {:>10} {:>10} {:>10} {}\n", label, or_dash(factor * v.x()), or_dash(factor * v.y()),
+           or_dash(factor * v.z()), unit);
+  };
+  row("mean, measured", m.mean_n, "N");
+  row("mean, predicted", m.predicted_mean_n, "N");
+  row("peak, measured", m.peak_n, "N");
+  row("peak, predicted", m.predicted_peak_n, "N");
+  row("rms, measured", m.rms_n, "N");
+  row("error, rms", m.error_n, "N");
+  row("… of measured rms", m.error_ratio, "%", 100.0);
+  row("… without means", m.shape_error_ratio, "%", 100.0);
+  row("record's scatter", m.scatter_n, "N, of single revolutions about their mean");
+  row("tooth to tooth", m.between_teeth_n, "N, rms of what differs between teeth");
+  row("drift", m.drift_n, "N over the stretch, taken out about its middle");
 }
 
 /// One block with its largest values.
@@ -147,6 +176,7 @@ void add_run(std::string& out, const path::ProgramRun& run) {
 std::string summary(const ForcesResult& result) {
   std::string out;
   if (result.revolution) add_revolution(out, *result.revolution, result.cut.on_workpiece);
+  if (result.measured) add_measured(out, *result.measured);
   if (result.program) add_program(out, *result.program, result.cut.power_time_s);
   io::add_notes(out, result.warnings, "warning      ");
   io::add_notes(out, result.notes, "note         ");

@@ -132,6 +132,31 @@ TEST(Dynamics, HasTheModeOfAPendulum) {
   EXPECT_LT(std::abs(mode.right(0)), 1e-15);
 }
 
+// Without what couples them every joint is an oscillator of its own: ω² = k / m_ii, ζ = c / (2 √(k m_ii)), and moves
+// the point by its column of the Jacobian.
+TEST(Dynamics, OfTheJointsOwnInertia) {
+  Random random(76);
+  Arm arm = testing::kr210();
+  furnish(arm, random);
+  const Eigen::VectorXd position = testing::kr210_posture();
+  const Eigen::VectorXd mass = mass_matrix(arm, position).diagonal();
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> jac = jacobian(arm, position, tip);
+  const ToolModes found = tool_modes(arm, position, tip, Inertia::diagonal);
+  ASSERT_EQ(found.modes.size(), 6U);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    const double hz = std::sqrt(joint.stiffness / mass(i)) / (2.0 * testing::pi);
+    const auto mode =
+        std::ranges::min_element(found.modes, {}, [&](const ToolMode& m) { return std::abs(m.frequency_hz - hz); });
+    EXPECT_NEAR(mode->frequency_hz, hz, 1e-9 * hz);
+    EXPECT_NEAR(mode->damping_ratio, joint.damping / (2.0 * std::sqrt(joint.stiffness * mass(i))), 1e-9);
+    const double along =
+        std::abs(mode->right.dot(jac.col(i).cast<Complex>())) / (mode->right.norm() * jac.col(i).norm());
+    EXPECT_NEAR(along, 1.0, 1e-9);
+  }
+  EXPECT_GT(std::abs(tool_modes(arm, position, tip).modes[0].frequency_hz / found.modes[0].frequency_hz - 1.0), 1e-3);
+}
+
 TEST(Dynamics, RejectsAnArmWithoutMass) {
   Random random(75);
   Arm arm = testing::kr210();

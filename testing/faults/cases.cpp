@@ -171,6 +171,23 @@ Files labelled_recordings() {
   return files;
 }
 
+constexpr const char* force_cut_toml =
+    "force_on = \"tool\"\n[tool]\nkind = \"flat-end\"\ndiameter_mm = 10\nteeth = 2\nhelix_deg = "
+    "30\n[cut]\naxial_depth_mm = "
+    "2\nradial_depth_mm = 5\nfeed_per_tooth_mm = 0.1\ndirection = \"up\"\nspindle_speed_rpm = 6000\n[coefficients]\n"
+    "tangential_n_per_mm2 = 800\nradial_n_per_mm2 = 300\n";
+
+/// Forces that repeat with the teeth of such a cut.
+std::string force_record() {
+  std::string text = "time_s,fx_n,fy_n,fz_n\n";
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 2e-4 * i, angle = 2.0 * std::numbers::pi * 200.0 * t;
+    text += fmt::format("{:.4f},{:.4g},{:.4g},{:.4g}\n", t, 40.0 + 60.0 * std::cos(angle),
+                        30.0 + 50.0 * std::sin(angle), 5.0 + 3.0 * std::cos(angle + 1.0));
+  }
+  return text;
+}
+
 Files inputs_of_verb(std::string_view verb) {
   if (verb == "init" || verb == "frf") return {};
   if (verb == "modes") return {{"tip.csv", one_mode()}, {"assembly.toml", assembly_toml()}};
@@ -191,6 +208,8 @@ Files inputs_of_verb(std::string_view verb) {
              "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n0.05,5.08,3000,-555.8508,655.6513,"
              "255.9891\n0.1,5.08,3000,-751.4308,1119.2013,493.6902\n0.025,5.08,3000,-458.0608,423.8763,137.1385\n"}};
   }
+  if (verb == "coefficients --signal") return {{"cut.toml", force_cut_toml}, {"record.csv", force_record()}};
+  if (verb == "forces --measured") return {{"cut.toml", force_cut_toml}, {"record.csv", force_record()}};
   if (verb == "stiffness") {
     return {{"cell.toml", "[robot]\ndh = [{ a_mm = 800 }, { a_mm = 200, alpha_deg = 90 }]\n"},
             {"loads.csv",
@@ -277,6 +296,9 @@ std::vector<Case> all_cases() {
       {"coefficients", "toml", "coefficients slots.csv -o c.toml"},
       {"coefficients", "csv", "coefficients slots.csv -o c.csv"},
       {"coefficients", "json", "coefficients slots.csv -o c.json"},
+      {"coefficients --signal", "toml", "coefficients --signal record.csv --cut cut.toml -o c.toml"},
+      {"coefficients --signal", "json", "coefficients --signal record.csv --cut cut.toml -o c.json"},
+      {"forces --measured", "csv", "forces cut.toml --measured record.csv -o f.csv"},
       {"stiffness", "toml", "stiffness loads.csv --cell cell.toml -o s.toml"},
       {"stiffness", "csv", "stiffness loads.csv --cell cell.toml -o s.csv"},
       {"stiffness", "json", "stiffness loads.csv --cell cell.toml -o s.json"},

@@ -135,6 +135,8 @@ export type Revolution = ForcesWith<
 export type Program = ForcesWith<'cutting_blocks' | 'power_time_s' | 'torque_limit_n_m' | 'power_limit_w' | 'highest' | 'worst' | 'blocks'>;
 /** A ring of the cutter and where its teeth are in the material. */
 export type Ring = Revolution['engagement'][number];
+/** A force record beside the revolution. */
+export type MeasuredForces = NonNullable<Forces['measured']>;
 export type SpindleRotation = NonNullable<Forces['spindle_rotation']>;
 export type WorstBlock = NonNullable<Documents['forces']['worst']>[number];
 type HighestValues = NonNullable<Documents['forces']['highest']>;

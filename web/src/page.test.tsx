@@ -266,6 +266,23 @@ it('leaves out of the forces what is not there', () => {
   expect(page()).not.toContain('data-plot="engagement"');
 });
 
+it('shows a force record beside the forces', () => {
+  expect(page()).not.toContain('Measured beside predicted');
+  const turn = report.forces!.rotation_deg!;
+  const course = turn.map(() => 1.5);
+  const none = turn.map(() => null);
+  const three = [12.5, -3.25, null] as [number, number, null];
+  const each = { mean_n: three, mean_std_n: three, predicted_mean_n: three, peak_n: three, peak_std_n: three, predicted_peak_n: three, rms_n: three, predicted_rms_n: three };
+  report.forces!.measured = {
+    ...each, file: 'dyno.csv', channels: ['-Fy', '-Fx', 'none'], sample_rate_hz: 10000, from_s: 0.1, to_s: 0.9, revolutions: 79, revolutions_in_record: 100,
+    spindle_speed_rpm: 5999.74, spindle_speed_std_rpm: 0.009, wander_deg: 0.16, offset_std_deg: 0.02, air_revolutions: 0, zero_n: three, drift_n: three,
+    scatter_n: three, between_teeth_n: three, error_n: three, error_ratio: [0.5, 0.25, null], shape_error_n: three, shape_error_ratio: [0.5, 0.25, null], error_ratio_of_all: 0.5,
+    fx_n: course, fy_n: course, fz_n: none, fx_std_n: course, fy_std_n: course, fz_std_n: none,
+    harmonics: [{ multiple: 2, frequency_hz: 200, measured_n: three, predicted_n: three }],
+  };
+  for (const part of ['Measured beside predicted', 'dyno.csv: 79 revolutions', '5999.74 ± 0.009', 'from -Fy, -Fx, none', 'Mean, predicted (N)', 'data-plot="measured"', 'Harmonics of the rotation']) expect(page()).toContain(part);
+});
+
 it('says what the simulation found', () => {
   expect(page()).toContain('<strong>stable</strong> Simulated in the time domain');
   report.forces!.vibration = { ...report.forces!.vibration!, verdict: 'chatter', chatter_frequency_hz: 683.4 };

@@ -15,6 +15,7 @@
 #include "robomill/jobs/calibrate.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
+#include "robomill/jobs/files/signal_json.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
@@ -43,7 +44,7 @@ struct Endings {
   const char* rule;
 };
 constexpr Format none = Format::json;
-constexpr std::array<Endings, 13> endings = {
+constexpr std::array<Endings, 14> endings = {
     {{Document::frfs,
       {Format::uff, Format::csv, Format::text, Format::mat},
       "FRFs are written as .uff, .csv, .txt, .mat or .json"},
@@ -59,6 +60,9 @@ constexpr std::array<Endings, 13> endings = {
      {Document::coefficients,
       {Format::toml, Format::csv, none, none},
       "coefficients are written as .toml, .csv or .json"},
+     {Document::signal_coefficients,
+      {Format::toml, none, none, none},
+      "coefficients of a force record are written as .toml or .json"},
      {Document::stiffness,
       {Format::csv, Format::toml, none, none},
       "joint stiffness is written as .csv, .json or as .toml, a line for cell.toml"},
@@ -118,6 +122,9 @@ std::string document(const CoefficientsResult& result, Format format) {
   if (format == Format::csv) return cutting::slot_fit_csv(result.fit);
   if (format == Format::toml) return cutting::slot_fit_toml(result.fit, result.file, result.assumed);
   return cutting::slot_fit_json(result.fit, result.file, result.assumed);
+}
+std::string document(const SignalCoefficientsResult& result, Format format) {
+  return format == Format::toml ? signal_coefficients_toml(result) : signal_coefficients_json(result);
 }
 std::string document(const StiffnessResult& result, Format format) {
   const robot::Arm& arm = result.cell.robot.arm;
@@ -194,6 +201,10 @@ std::string shortfall(const CoefficientsResult& result) {
     return "the tangential coefficient is not above 0: are these the forces on the tool?";
   }
   return result.fit.status == cutting::SlotFit::Status::identified ? "" : "one feed does not determine the edge force";
+}
+
+std::string shortfall(const SignalCoefficientsResult& result) {
+  return result.fit.identifiable ? "" : "the record does not determine every coefficient";
 }
 
 std::string shortfall(const StiffnessResult& result) {

@@ -23,6 +23,7 @@
 #include "robomill/jobs/files/job_schema.hpp"
 #include "robomill/jobs/files/lobes_schema.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/files/signal_json.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
 #include "robomill/modal/files/frf_schema.hpp"
 #include "robomill/modal/files/hits_schema.hpp"
@@ -212,6 +213,7 @@ const std::vector<Entry>& documents() {
                                    &cell::check_table().info(),
                                    &decision::tools_table().info(),
                                    &cutting::coefficients_document(),
+                                   &signal_coefficients_document(),
                                    &live::recorded_run_table().info()})
       out.push_back({table->name + ".json", *table});
     return out;

@@ -160,6 +160,14 @@ page::Report page_of(const CoefficientsResult& result) {
   return page;
 }
 
+page::Report page_of(const SignalCoefficientsResult& result) {
+  page::Report page = titled("Cutting force coefficients of a force record", summary(result));
+  if (result.forces.revolution) page.forces = process::forces_json(result.forces);
+  page.notes = result.fit.notes;
+  page.assumed = result.assumed;
+  return page;
+}
+
 page::Report page_of(const StiffnessResult& result) {
   page::Report page = titled("Joint stiffness", summary(result));
   page.stiffness = robot::stiffness_json(result.found, result.cell.robot.arm, result.loads);

@@ -236,6 +236,17 @@ void add_pair(std::string& out, const char* name, const cutting::CoefficientPair
   io::append(out, "\n");
 }
 
+/// "1234 ± 5 κ, 12 ± 1": a polynomial in κ, highest power first.
+std::string polynomial_text(const std::vector<double>& values, const std::vector<double>& deviations, double unit) {
+  std::string out;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t power = values.size() - 1 - i;
+    out += (i == 0 ? "" : ", ") + with_spread(values[i] / unit, deviations[i] / unit);
+    if (power > 0) out += power == 1 ? " κ" : fmt::format(" κ^{}", power);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string summary(const LobesJobResult& result) {
@@ -323,6 +334,31 @@ std::string summary(const CoefficientsResult& result) {
   }
   io::add_notes(out, result.file.notes, "Note: ");
   io::add_notes(out, fit.notes, "");
+  return out + assumed_text(result.assumed);
+}
+
+std::string summary(const SignalCoefficientsResult& result) {
+  const cutting::SignalFit& fit = result.fit;
+  const cutting::MillingCoefficients &found = fit.coefficients, &std = fit.deviations;
+  std::string out;
+  const auto add = [&out](const char* name, const std::vector<double>& values, const std::vector<double>& deviations,
+                          double unit, const char* text) {
+    io::append(out, "{:<17} {} {}\n", name, polynomial_text(values, deviations, unit), text);
+  };
+  add("tangential", found.tangential_n_per_m2, std.tangential_n_per_m2, units::n_per_mm2, "N/mm²");
+  add("radial", found.radial_n_per_m2, std.radial_n_per_m2, units::n_per_mm2, "N/mm²");
+  add("axial", found.axial_n_per_m2, std.axial_n_per_m2, units::n_per_mm2, "N/mm²");
+  add("tangential, edge", found.tangential_edge_n_per_m, std.tangential_edge_n_per_m, units::n_per_mm, "N/mm");
+  add("radial, edge", found.radial_edge_n_per_m, std.radial_edge_n_per_m, units::n_per_mm, "N/mm");
+  add("axial, edge", found.axial_edge_n_per_m, std.axial_edge_n_per_m, units::n_per_mm, "N/mm");
+  io::append(out, "R² {:.4f}, {:.4f}, {:.4f} in x, y, z; {:.3g} N are left about the fit\n", fit.r_squared.x(),
+             fit.r_squared.y(), fit.r_squared.z(), fit.noise_n);
+  io::add_notes(out, fit.notes, "");
+  if (result.forces.revolution) {
+    out += process::summary(result.forces);
+  } else {
+    io::add_notes(out, result.forces.notes, "note         ");
+  }
   return out + assumed_text(result.assumed);
 }
 

@@ -58,12 +58,61 @@ process::ForcesResult forces_from(const VerbJob& job, Progress& progress) {
   return run_forces(file, program, std::move(cell), progress);
 }
 
+/// An error about a member of the record's options is one about the option.
+InvalidInput about_record(const VerbJob& job, const InvalidInput& error) {
+  InvalidInput out = job.about_option(error, "speed_tolerance", "speed_tolerance_percent", 0.01);
+  for (const char* option : {"channels", "full_scale_n", "sample_rate_hz"})
+    out = job.about_option(out, option, option, 1.0);
+  for (const char* member : {"from_s", "to_s"}) out = job.about_option(out, member, "range_s", 1.0);
+  return out;
+}
+
+cutting::ForceRecordOptions record_options(const VerbJob& job) {
+  return {.channels = job.texts("channels"),
+          .full_scale_n = job.get("full_scale_n", 0.0),
+          .sample_rate_hz = job.get("sample_rate_hz", 0.0)};
+}
+
+process::RecordStretch record_stretch(const VerbJob& job) {
+  process::RecordStretch out;
+  if (job.has("speed_tolerance_percent")) out.speed_tolerance = 0.01 * job.get("speed_tolerance_percent", 0.0);
+  if (const std::vector<double> range_s = job.numbers("range_s"); !range_s.empty()) {
+    out.from_s = range_s[0];
+    out.to_s = range_s[1];
+  }
+  return out;
+}
+
+process::ForcesResult measured_forces_from(const VerbJob& job, Progress& progress) {
+  if (job.has("program")) throw InvalidInput(job.named("measured"), "goes with one revolution, not with a program");
+  const MeasuredForceJob wanted = {
+      .record = job.file("measured"), .reading = record_options(job), .stretch = record_stretch(job)};
+  try {
+    return run_measured_forces(job.input(), wanted, job.file("cell"), progress);
+  } catch (const InvalidInput& error) {
+    throw about_record(job, error);
+  }
+}
+
 Outcome run_forces_verb(const VerbJob& job, Progress& progress) {
+  if (job.has("measured")) return finished(job, measured_forces_from(job, progress), progress);
   return with_posture(job, [&] { return finished(job, forces_from(job, progress), progress); });
 }
 
 Outcome run_coefficients_verb(const VerbJob& job, Progress&) {
   return finished(job, run_coefficients({.slots = job.input(), .teeth = job.get("teeth", 0)}));
+}
+
+Outcome run_signal_verb(const VerbJob& job, Progress&) {
+  try {
+    return finished(job, run_signal_coefficients({.record = job.input(),
+                                                  .cut = job.file("cut"),
+                                                  .reading = record_options(job),
+                                                  .stretch = record_stretch(job),
+                                                  .degree = job.get("degree", 0)}));
+  } catch (const InvalidInput& error) {
+    throw about_record(job, error);
+  }
 }
 
 Verb lobes_verb() {
@@ -155,20 +204,55 @@ Verb explain_verb() {
           .run = &run_explain_verb};
 }
 
+/// How a force record is read. @param needs  the option that names it; empty: the input does
+std::vector<VerbOption> record_reading(std::string_view needs) {
+  std::vector<VerbOption> out = {
+      plain_option("channels",
+                   "its columns for x along the feed, y to its left, z to the spindle, by name or number: "
+                   "--channels=-Fy,-Fx,none (default: by their names)",
+                   Takes::texts),
+      {.name = "range_s",
+       .meaning = "A,B in s: the part of the record in the cut (default: found)",
+       .takes = Takes::numbers,
+       .flag = "--range",
+       .unit = "s",
+       .count = 2,
+       .at_least = 0},
+      {.name = "speed_tolerance_percent",
+       .meaning = "how far its speed may lie from that of the cut (default: 1 %)",
+       .takes = Takes::number,
+       .unit = "%",
+       .at_least = 0,
+       .at_most = 10},
+      positive_option("full_scale_n", "force that the full scale of a WAV means", "N"),
+      positive_option("sample_rate_hz", "its sample rate, where the record does not state it", "Hz")};
+  for (VerbOption& option : out) option.needs = needs;
+  return out;
+}
+
+std::vector<VerbOption> forces_options() {
+  std::vector<VerbOption> out = {
+      file_option("program", "an NC program: a row a block in place of one revolution", {"program"}),
+      file_option("cell", "cell.toml: the robot that the cut bends", {"cell"}), posture_option("program"),
+      file_option("measured", "a dynamometer's record: measured beside predicted over one revolution", {"record"})};
+  for (VerbOption& option : record_reading("measured")) out.push_back(std::move(option));
+  return out;
+}
+
 Verb forces_verb() {
-  return {
-      .name = "forces",
-      .button = "Compute forces",
-      .purpose = "a cutter in its cut, or along a program, to cutting forces",
-      .more = "Forces, torque, power and deflection over a revolution, or block by block.",
-      .example = "forces forces.toml -o forces.csv --report forces.html",
-      .readme = "robomill/cutting/README.md",
-      .input = file_option("forces", "forces.toml, or a job.toml", {"forces", "job"}, true),
-      .output = "forces.csv",
-      .document = Document::forces,
-      .options = {file_option("program", "an NC program: a row a block in place of one revolution", {"program"}),
-                  file_option("cell", "cell.toml: the robot that the cut bends", {"cell"}), posture_option("program")},
-      .run = &run_forces_verb};
+  return {.name = "forces",
+          .button = "Compute forces",
+          .purpose = "a cutter in its cut, or along a program, to cutting forces",
+          .more =
+              "Forces, torque, power and deflection over a revolution, or block by block. --measured compares a force "
+              "record.",
+          .example = "forces forces.toml -o forces.csv --report forces.html",
+          .readme = "robomill/cutting/README.md",
+          .input = file_option("forces", "forces.toml, or a job.toml", {"forces", "job"}, true),
+          .output = "forces.csv",
+          .document = Document::forces,
+          .options = forces_options(),
+          .run = &run_forces_verb};
 }
 
 Verb coefficients_verb() {
@@ -185,10 +269,36 @@ Verb coefficients_verb() {
           .run = &run_coefficients_verb};
 }
 
+Verb signal_verb() {
+  std::vector<VerbOption> options = {
+      file_option("cut", "forces.toml of the cut, [coefficients] not needed", {"forces"}, true),
+      whole_option("degree", "of the cutting coefficients as polynomials in the axial position angle (default: 0)", 0,
+                   6)};
+  for (VerbOption& option : record_reading({})) options.push_back(std::move(option));
+  return {.name = "coefficients --signal",
+          .button = "Identify coefficients of a force record",
+          .purpose = "the force record of one cut to cutting force coefficients",
+          .more =
+              "For any cutter in any cut, also as polynomials along a ball end's edge. With standard deviations, and "
+              "the record beside the forces of what was found.",
+          .example = "coefficients --signal record.csv --cut cut.toml -o coefficients.toml",
+          .readme = "robomill/cutting/README.md",
+          .input = {.name = "signal",
+                    .meaning = "the force record of a steady cut",
+                    .takes = Takes::file,
+                    .required = true,
+                    .flag = "--signal",
+                    .kinds = {"record"}},
+          .output = "coefficients.toml",
+          .document = Document::signal_coefficients,
+          .options = std::move(options),
+          .run = &run_signal_verb};
+}
+
 }  // namespace
 
 std::vector<Verb> cut_verbs() {
-  return {lobes_verb(), simulate_verb(), explain_verb(), forces_verb(), coefficients_verb()};
+  return {lobes_verb(), simulate_verb(), explain_verb(), forces_verb(), coefficients_verb(), signal_verb()};
 }
 
 }  // namespace robomill::jobs

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -10,11 +11,21 @@
 namespace robomill::process {
 namespace {
 
-std::string revolution_csv(const RevolutionForces& revolution, double sign) {
+/// An empty cell of a component that was not measured.
+void add_measured_cells(std::string& text, const Eigen::Matrix3Xd& force_n, Eigen::Index column) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    text += ',';
+    if (std::isfinite(force_n(axis, column))) io::append(text, "{:.9g}", force_n(axis, column));
+  }
+}
+
+std::string revolution_csv(const RevolutionForces& revolution, double sign, const MeasuredRevolution* measured) {
   const cutting::CuttingForce& force = revolution.deflected.force;
   const bool vibrating = revolution.vibrating_force_n.cols() > 0;
   std::string text = "rotation_deg,fx_n,fy_n,fz_n,torque_n_m";
-  text += vibrating ? ",vibrating_fx_n,vibrating_fy_n,vibrating_fz_n\n" : "\n";
+  if (vibrating) text += ",vibrating_fx_n,vibrating_fy_n,vibrating_fz_n";
+  if (measured != nullptr) text += ",measured_fx_n,measured_fy_n,measured_fz_n";
+  text += '\n';
   for (Eigen::Index i = 0; i < force.rotation_rad.size(); ++i) {
     const Eigen::Vector3d f = sign * force.force_n.col(i);
     io::append(text, "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", force.rotation_rad(i) / units::deg, f.x(), f.y(), f.z(),
@@ -23,6 +34,7 @@ std::string revolution_csv(const RevolutionForces& revolution, double sign) {
       const Eigen::Vector3d v = sign * revolution.vibrating_force_n.col(i);
       io::append(text, ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
     }
+    if (measured != nullptr) add_measured_cells(text, measured->force.force_n, i);
     text += '\n';
   }
   return text;
@@ -84,7 +96,10 @@ void program_json(const ForcesResult& result, Pieces& pieces, Progress& progress
 }  // namespace
 
 void write_forces_csv(const ForcesResult& result, const TakeText& take, Progress& progress) {
-  if (!result.program) return take(revolution_csv(*result.revolution, result.cut.on_workpiece ? -1.0 : 1.0));
+  if (!result.program) {
+    const double sign = result.cut.on_workpiece ? -1.0 : 1.0;
+    return take(revolution_csv(*result.revolution, sign, result.measured ? &*result.measured : nullptr));
+  }
   progress.start("forces.csv", result.program->blocks.size());
   Pieces pieces(take);
   program_csv(result, pieces, progress);

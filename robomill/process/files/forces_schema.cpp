@@ -11,6 +11,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/cut_schema.hpp"
+#include "robomill/process/files/measured_schema.hpp"
 #include "robomill/process/files/revolution_schema.hpp"
 #include "robomill/program/files/skipped_schema.hpp"
 
@@ -328,6 +329,11 @@ const Schema<ForcesResult>& forces_table() {
           rows.push_back(
               where([](const ForcesResult& result) { return result.revolution.has_value(); }, std::move(row)));
         }
+        rows.push_back(where(
+            [](const ForcesResult& result) { return result.measured.has_value(); },
+            key(
+                "measured", [](const ForcesResult& result) { return result.measured ? &*result.measured : nullptr; },
+                measured_table(), "with a force record")));
         for (Row<ForcesResult>& row : program_keys())
           rows.push_back(where([](const ForcesResult& result) { return result.program.has_value(); }, std::move(row)));
         add_rows(rows,

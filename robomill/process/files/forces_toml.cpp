@@ -21,6 +21,9 @@ namespace {
 
 using io::key;
 
+constexpr Name<robot::Inertia> inertia_names[] = {{"full", robot::Inertia::full},
+                                                  {"diagonal", robot::Inertia::diagonal}};
+
 io::Row<Cut> feed_direction_row() {
   io::Row<Cut> row = key("feed_direction", &Cut::feed_direction, "[x, y, z] of the feed in the work frame");
   row.key.rule.entries = 3;
@@ -66,12 +69,12 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
                 .spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s.value_or(0.0)};
   out.feed_direction_rad = cut.feed_direction_rad;
   out.on_workpiece = cut.force_on_workpiece;
-  if (job == ForcesJob::revolution) check_cut(file, cut, out);
+  if (job != ForcesJob::program) check_cut(file, cut, out);
 }
 
 /// @param document  whose [robot] may be the arm itself
 void read_robot(io::TomlFile& file, const std::filesystem::path& document, ForcesJob job, ForcesFile& out) {
-  const bool alone = job == ForcesJob::revolution;
+  const bool alone = job != ForcesJob::program;
   const bool holds_arm = std::ranges::any_of(cell::arm_keys, [&](const char* key) { return file.has(key); });
   const bool has_cell = holds_arm || file.has("job.cell");
   if (!file.has("robot") && !has_cell) return;
@@ -103,7 +106,7 @@ void read_stock(io::TomlFile& file, ForcesFile& out) {
 void read_coefficients(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   cutting::CutAtHand cut;
   cut.kind = out.cutter.kind;
-  if (job == ForcesJob::revolution) {
+  if (job != ForcesJob::program) {
     const double speed_m_per_s = 0.5 * out.cutter.mill.diameter_m * out.motion.spindle_speed_rad_per_s;
     cut.cutting_speed_m_per_s = {speed_m_per_s, speed_m_per_s};
     cut.feed_per_tooth_m = out.motion.feed_per_tooth_m;
@@ -136,7 +139,8 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
   read_cutter(file, out.cutter);
   read_cut(file, job, out);
-  read_coefficients(file, job, out);
+  const bool has_coefficients = job != ForcesJob::identification || file.has("coefficients");
+  if (has_coefficients) read_coefficients(file, job, out);
   read_stock(file, out);
   forces_options_table().read(file, "forces", out);
   file.locate([&] {
@@ -151,10 +155,11 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
       }
     }
   });
-  if (job == ForcesJob::revolution) {
+  if (job != ForcesJob::program) {
     // What only the cut itself shows, a shank in it or a coefficient below 0, is reported in the file's words.
     file.locate([&] {
       const cutting::Engagement engagement = cutting::engage(out.cutter, out.cut, {.slices = out.slices});
+      if (!has_coefficients) return;
       static_cast<void>(cutting::cutting_force(out.cutter, engagement, out.coefficients, out.motion, out.force));
     });
   }
@@ -191,7 +196,9 @@ const io::Schema<Cut>& robot_of_cut_table() {
       {io::declared<Cut>("cell", io::Holds::path, "the file that describes it"),
        key("joints_deg", &Cut::joints_rad, "its posture"), feed_direction_row(),
        key("vibration", &Cut::robot_vibrates,
-           "the arm's own modes take part in the vibration (needs links and damping in the cell)")});
+           "the arm's own modes take part in the vibration (needs links and damping in the cell)"),
+       key("inertia", &Cut::robot_inertia, inertia_names,
+           "of the arm's modes: of all links, or the joints' own without what couples them")});
   return table;
 }
 

@@ -15,10 +15,11 @@ class TomlFile;
 
 namespace robomill::process {
 
-/// For which of the verb's two jobs the file is read: what the other one needs may be missing.
+/// For which job the file is read: what the others need may be missing.
 enum class ForcesJob {
-  revolution,  ///< one revolution of one cut: needs depths, feed, speed and direction, and the posture of a robot
-  program      ///< block by block along a program: speed, feed and engagement come from program and workpiece
+  identification,  ///< one revolution of one cut whose coefficients are sought: they may be missing
+  revolution,      ///< one revolution of one cut: needs depths, feed, speed and direction, and the posture of a robot
+  program          ///< block by block along a program: speed, feed and engagement come from program and workpiece
 };
 
 /// forces.toml: a cut, and the document that it was read from.

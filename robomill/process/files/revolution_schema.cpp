@@ -137,6 +137,20 @@ const Schema<Simulation>& vibration_table() {
   return table;
 }
 
+/// Of the same cut on a rigid robot.
+template <class Value>
+Row<RevolutionView> rigid(const char* name, Value value, const char* meaning) {
+  return key(
+             name,
+             [value](const RevolutionView& v) {
+               const std::optional<cutting::ForceSummary>& force = v.revolution->rigid;
+               return force ? std::optional<Eigen::Vector3d>(v.sign * value(*force)) : std::nullopt;
+             },
+             meaning)
+      .entries(3)
+      .null_list();
+}
+
 std::vector<Row<RevolutionView>> revolution_keys() {
   using View = RevolutionView;
   return {
@@ -151,6 +165,12 @@ std::vector<Row<RevolutionView>> revolution_keys() {
           .entries(3),
       key(
           "peak_force_n", [](const View& v) { return v.force().peak_force_n; }, "largest magnitude"),
+      rigid(
+          "rigid_mean_n", [](const cutting::ForceSummary& force) { return force.mean_n; },
+          "mean in x, y, z as if the robot did not deflect; none: no robot"),
+      rigid(
+          "rigid_peak_n", [](const cutting::ForceSummary& force) { return force.peak_n; },
+          "the same, largest with its sign; none: no robot"),
       key(
           "torque_n_m", [](const View& v) { return v.force().mean_torque_n_m; }, "mean"),
       key(

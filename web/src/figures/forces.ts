@@ -6,7 +6,7 @@ import { axis, layout, lines, points, thinSpace, type Figure, type Layout, type 
 const turnAxis = 'Rotation φ from +y (°)';
 
 /** Ticks of an angle that suit its range and the room: 45° apart within a turn, wider over several or where narrow. */
-function turnTicks(from: number, to: number, narrow: boolean): Layout {
+export function turnTicks(from: number, to: number, narrow: boolean): Layout {
   return { range: [from, to], tick0: 0, dtick: (narrow ? 90 : 45) * Math.max(1, Math.ceil((to - from) / 360)) };
 }
 

@@ -7,6 +7,7 @@ import { Bullets, DetailsTable, Facts, Section, someOf, Table, WarningBox, type 
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
 import { isProgram, isRevolution, valueAt } from '../views';
+import { MeasuredPart } from './measured';
 
 type Triple = [number, number, number];
 
@@ -21,6 +22,7 @@ function Components({ turn }: { turn: Revolution }) {
     ['Peak (N)', turn.peak_n],
     ['Root mean square (N)', turn.rms_n],
   ];
+  if (turn.rigid_mean_n) rows.push(['Mean as if the robot did not deflect (N)', turn.rigid_mean_n]);
   if (turn.deflection_um !== null) rows.push(['Deflection by the mean force (µm)', turn.deflection_um]);
   return (
     <Table
@@ -288,6 +290,7 @@ export function ForcesSection({ forces }: { forces: Forces }) {
       <Facts facts={facts} />
       <WarningBox heading="Before you use these forces" texts={warnings} />
       {isRevolution(forces) && <RevolutionPart turn={forces} />}
+      {isRevolution(forces) && forces.measured && <MeasuredPart turn={forces} measured={forces.measured} />}
       {isProgram(forces) && <ProgramPart program={forces} />}
       {sweep && <RotationPart sweep={sweep} />}
       <Bullets texts={notes} />

@@ -68,6 +68,7 @@ const documentNames: Record<string, string> = {
   modes: 'a table of modes',
   joint: 'a joint',
   coefficients: 'cutting force coefficients',
+  signal_coefficients: 'coefficients of a force record',
   stiffness: 'joint stiffness',
   tools: 'tools compared',
   check: 'check of a cell',
