@@ -40,7 +40,8 @@ std::string record_of(const process::ForcesResult& result) {
     const double place = (turns - std::floor(turns)) * static_cast<double>(force.force_n.cols());
     const auto at = static_cast<Eigen::Index>(place);
     const double share = place - static_cast<double>(at);
-    Eigen::Vector3d f = -(1.0 - share) * force.force_n.col(at) - share * force.force_n.col((at + 1) % force.force_n.cols());
+    Eigen::Vector3d f =
+        -(1.0 - share) * force.force_n.col(at) - share * force.force_n.col((at + 1) % force.force_n.cols());
     if (t < 0.1 || t > 0.5) f.setZero();
     text += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f}\n", t, -f.y() + 5.0 + 2.0 * random.normal(),
                         f.x() - 3.0 + 2.0 * random.normal(), f.z() + 2.0 * random.normal());
@@ -72,9 +73,11 @@ TEST(MeasuredForces, StandBesideThePrediction) {
     EXPECT_LT(json["error_n"][axis].get<double>(), 1.0);
   }
   EXPECT_EQ(json["fx_n"].size(), whole["fx_n"].size());
-  EXPECT_TRUE(process::forces_csv(result).starts_with("rotation_deg,fx_n,fy_n,fz_n,torque_n_m,measured_fx_n,measured_fy_n,measured_fz_n\n"));
+  EXPECT_TRUE(process::forces_csv(result).starts_with(
+      "rotation_deg,fx_n,fy_n,fz_n,torque_n_m,measured_fx_n,measured_fy_n,measured_fz_n\n"));
   const std::string text = process::summary(result);
-  for (const char* part : {"measured     record.csv", "peak, predicted", "record's scatter", "revolutions in air was taken off"}) {
+  for (const char* part :
+       {"measured     record.csv", "peak, predicted", "record's scatter", "revolutions in air was taken off"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   }
   for (const Assumption& one : result.assumed) EXPECT_NE(one.key, "force_on");
@@ -101,22 +104,24 @@ TEST(MeasuredForces, NameTheFileOfABadRecord) {
   const Files files;
   std::string flat = "time_s,Fx,Fy,Fz\n";
   Random random(1);
-  for (int i = 0; i < 3000; ++i) flat += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f}\n", 1e-4 * i, random.normal(), random.normal(), random.normal());
+  for (int i = 0; i < 3000; ++i)
+    flat += fmt::format("{:.4f},{:.3f},{:.3f},{:.3f}\n", 1e-4 * i, random.normal(), random.normal(), random.normal());
   const auto air = files.folder.file("air.csv", flat);
   const std::string text = rejection([&] { (void)run_measured_forces(files.forces, {.record = air}); });
   EXPECT_NE(text.find("air.csv: repeats nothing with the rotation"), std::string::npos) << text;
 }
 
-// What the record was made with comes back, with the truth within three deviations or 1 %.
+// What the record was made with comes back, within three deviations or the 3 % that 100 samples a revolution lose of an
+// edge that enters at once.
 TEST(SignalCoefficients, OfARecord) {
   const Files files;
   const auto bare = files.folder.file("cut.toml", "force_on = \"workpiece\"\n" + cut);
-  const SignalCoefficientsResult result = run_signal_coefficients(
-      {.record = files.record, .cut = bare, .reading = files.job.reading});
+  const SignalCoefficientsResult result =
+      run_signal_coefficients({.record = files.record, .cut = bare, .reading = files.job.reading});
   const auto near = [](const std::vector<double>& found, const std::vector<double>& deviation, double expected) {
     ASSERT_EQ(found.size(), 1U);
     EXPECT_GT(deviation[0], 0.0);
-    EXPECT_NEAR(found[0], expected, std::max(3.0 * deviation[0], 0.01 * expected));
+    EXPECT_NEAR(found[0], expected, std::max(3.0 * deviation[0], 0.03 * expected));
   };
   const cutting::SignalFit& fit = result.fit;
   near(fit.coefficients.tangential_n_per_m2, fit.deviations.tangential_n_per_m2, 800e6);
@@ -133,14 +138,16 @@ TEST(SignalCoefficients, OfARecord) {
   EXPECT_GT(json["std"]["tangential_n_per_mm2"][0].get<double>(), 0.0);
   // coefficients.toml is one that forces.toml takes.
   io::write_file(files.folder.at("c.toml"), document(result, io::Format::toml));
-  const auto again = files.folder.file("again.toml", "force_on = \"workpiece\"\ncoefficients = { file = \"c.toml\" }\n" + cut);
+  const auto again =
+      files.folder.file("again.toml", "force_on = \"workpiece\"\ncoefficients = { file = \"c.toml\" }\n" + cut);
   EXPECT_LT(run_measured_forces(again, files.job).measured->force.error_ratio_of_all, 0.02);
 }
 
 TEST(SignalCoefficients, NeedAllComponents) {
   const Files files;
   const std::string text = rejection([&] {
-    (void)run_signal_coefficients({.record = files.record, .cut = files.forces, .reading = {.channels = {"Fy", "-Fx", "none"}}});
+    (void)run_signal_coefficients(
+        {.record = files.record, .cut = files.forces, .reading = {.channels = {"Fy", "-Fx", "none"}}});
   });
   EXPECT_NE(text.find("z is missing"), std::string::npos) << text;
 }

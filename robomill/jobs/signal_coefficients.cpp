@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -58,13 +59,17 @@ SignalCoefficientsResult run_signal_coefficients(const SignalCoefficientsJob& jo
   cut.assumed.clear();
   SignalCoefficientsResult out;
   out.record = job.record;
-  out.forces = beside(cut, usual_coefficients(), record, job.stretch);
+  // One step a sample: more would count each of them several times in the deviations.
+  process::Cut sampled = cut;
+  const double samples = 2.0 * std::numbers::pi * record.record.sample_rate_hz / cut.motion.spindle_speed_rad_per_s;
+  sampled.force.steps = static_cast<int>(std::clamp(samples, 8.0, 1e4));
+  out.forces = beside(std::move(sampled), usual_coefficients(), record, job.stretch);
   const cutting::MeasuredForce& mean = out.forces.measured->force;
   const cutting::Engagement engagement = cutting::engage(cut.cutter, cut.cut, {.slices = cut.slices});
   const Eigen::Matrix3Xd on_tool_n = (cut.on_workpiece ? -1.0 : 1.0) * mean.force_n;
-  out.fit = cutting::identify_from_signal(
-      cut.cutter, engagement, cut.motion, mean.rotation_rad, on_tool_n,
-      {.degrees = {.tangential = job.degree, .radial = job.degree, .axial = job.degree}});
+  out.fit =
+      cutting::identify_from_signal(cut.cutter, engagement, cut.motion, mean.rotation_rad, on_tool_n,
+                                    {.degrees = {.tangential = job.degree, .radial = job.degree, .axial = job.degree}});
   add_warning(out.fit);
   add_assumed(out.assumed, file.assumed);
   add_assumed(out.assumed, record.assumed);

@@ -70,10 +70,12 @@ void compare_with_record(ForcesResult& result, const cutting::ForceRecordFile& r
   std::vector<std::string> notes = record.notes;
   notes.insert(notes.end(), out.force.notes.begin(), out.force.notes.end());
   if (out.force.air_revolutions > 0) {
-    notes.push_back(fmt::format("The mean of {} revolutions in air was taken off the measured force.", out.force.air_revolutions));
+    notes.push_back(
+        fmt::format("The mean of {} revolutions in air was taken off the measured force.", out.force.air_revolutions));
   } else {
     notes.emplace_back(
-        "Measured forces are as recorded: the record has no five revolutions in air, so that an offset of the amplifier "
+        "Measured forces are as recorded: the record has no five revolutions in air, so that an offset of the "
+        "amplifier "
         "would be in the means.");
   }
   notes.emplace_back("What the dynamometer itself adds near its resonances is in the measured force.");

@@ -31,7 +31,8 @@ const Schema<MillingCoefficients>& polynomials_table() {
         std::vector<Row<Set>> rows;
         const auto add = [&rows](const char* name, std::vector<double> Set::*values, const char* meaning) {
           const auto value = [values](const Set& set) {
-            return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>((set.*values).data(), static_cast<Eigen::Index>((set.*values).size())));
+            return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>((set.*values).data(),
+                                                                     static_cast<Eigen::Index>((set.*values).size())));
           };
           rows.push_back(key(name, value, meaning).nullable());
         };
@@ -62,7 +63,8 @@ const Schema<Result>& signal_table() {
            .entries(3)
            .nullable(),
        key(
-           "noise_n", [](const Result& r) { return r.fit.noise_n; }, "standard deviation of the mean revolution about the fit"),
+           "noise_n", [](const Result& r) { return r.fit.noise_n; },
+           "standard deviation of the mean revolution about the fit"),
        key(
            "condition", [](const Result& r) { return r.fit.condition; }, "of the fit"),
        key(
@@ -80,7 +82,8 @@ const Schema<Result>& signal_table() {
            },
            "sentences for the user"),
        key(
-           "assumed", [](const Result& r) { return r.assumed; }, io::assumption_table(), "what the input did not give")},
+           "assumed", [](const Result& r) { return r.assumed; }, io::assumption_table(),
+           "what the input did not give")},
       Use::written, 1);
   return table;
 }

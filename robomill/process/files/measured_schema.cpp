@@ -72,15 +72,18 @@ const Schema<MeasuredRevolution>& measured_table() {
                 },
                 "its columns for x, y, z: - before one that is turned, \"none\""),
             of_force("sample_rate_hz", &MeasuredForce::sample_rate_hz, "of the record"),
-            of_force("from_s", &MeasuredForce::from_s, "where the revolutions begin that count; tooth 0 is at rotation 0"),
+            of_force("from_s", &MeasuredForce::from_s,
+                     "where the revolutions begin that count; tooth 0 is at rotation 0"),
             of_force("to_s", &MeasuredForce::to_s, "where they end"),
             of_force("revolutions", &MeasuredForce::revolutions, "that count"),
-            of_force("revolutions_in_record", &MeasuredForce::revolutions_in_record, "whole ones at the speed of the cut"),
+            of_force("revolutions_in_record", &MeasuredForce::revolutions_in_record,
+                     "whole ones at the speed of the cut"),
             of_force("spindle_speed_rpm", &MeasuredForce::spindle_speed_rad_per_s, "of the record"),
             of_force("spindle_speed_std_rpm", &MeasuredForce::spindle_speed_deviation_rad_per_s, "standard deviation"),
             of_force("wander_deg", &MeasuredForce::wander_rad, "standard deviation of a revolution's angle"),
             of_force("offset_std_deg", &MeasuredForce::offset_deviation_rad, "of the mean revolution's angle"),
-            of_force("air_revolutions", &MeasuredForce::air_revolutions, "whose mean was taken off; 0: forces are as recorded"),
+            of_force("air_revolutions", &MeasuredForce::air_revolutions,
+                     "whose mean was taken off; 0: forces are as recorded"),
             by_axis("zero_n", &MeasuredForce::zero_n, "that mean"),
             by_axis("drift_n", &MeasuredForce::drift_n, "of the means over the stretch, taken out about its middle"),
             by_axis("mean_n", &MeasuredForce::mean_n, "measured, x, y, z"),
@@ -92,15 +95,18 @@ const Schema<MeasuredRevolution>& measured_table() {
             by_axis("rms_n", &MeasuredForce::rms_n, "root mean square of the mean revolution"),
             by_axis("predicted_rms_n", &MeasuredForce::predicted_rms_n, "root mean square"),
             by_axis("scatter_n", &MeasuredForce::scatter_n, "root mean square of single revolutions about their mean"),
-            by_axis("between_teeth_n", &MeasuredForce::between_teeth_n, "root mean square of what differs from tooth to tooth"),
+            by_axis("between_teeth_n", &MeasuredForce::between_teeth_n,
+                    "root mean square of what differs from tooth to tooth"),
             by_axis("error_n", &MeasuredForce::error_n, "root mean square of predicted less measured"),
             by_axis("error_ratio", &MeasuredForce::error_ratio, "over rms_n"),
             by_axis("shape_error_n", &MeasuredForce::shape_error_n, "the same without the means"),
-            by_axis("shape_error_ratio", &MeasuredForce::shape_error_ratio, "over the measured root mean square without its mean"),
+            by_axis("shape_error_ratio", &MeasuredForce::shape_error_ratio,
+                    "over the measured root mean square without its mean"),
             of_force("error_ratio_of_all", &MeasuredForce::error_ratio_of_all, "of all components together")};
         io::add_rows(rows, courses());
         rows.push_back(key(
-            "harmonics", [](const MeasuredRevolution& at) { return at.force.harmonics; }, harmonic_table(), "of the rotation"));
+            "harmonics", [](const MeasuredRevolution& at) { return at.force.harmonics; }, harmonic_table(),
+            "of the rotation"));
         return rows;
       }(),
       Use::written);
