@@ -289,6 +289,19 @@ void add_notes(const MeasuredForceOptions& options, int teeth, MeasuredForce& ou
   }
 }
 
+/// Where the revolutions lie in the record, and how fast they are.
+void set_place(double begin_sample, std::size_t revolutions, const Speed& speed, MeasuredForce& out) {
+  const double count = static_cast<double>(revolutions);
+  out.revolutions = static_cast<int>(revolutions);
+  out.from_s = begin_sample / out.sample_rate_hz;
+  out.to_s = out.from_s + count / (speed.turns * out.sample_rate_hz);
+  const double rad_per_s = 2.0 * pi * out.sample_rate_hz;
+  out.spindle_speed_rad_per_s = speed.turns * rad_per_s;
+  out.spindle_speed_deviation_rad_per_s = speed.turns * rad_per_s * speed.angles.slope_deviation_rad / (2.0 * pi);
+  out.wander_rad = speed.angles.scatter_rad;
+  out.offset_deviation_rad = out.wander_rad / std::sqrt(count);
+}
+
 }  // namespace
 
 void MeasuredForceOptions::validate() const {
@@ -342,15 +355,7 @@ MeasuredForce compare_forces(const ForceRecord& record, const PredictedRevolutio
   out.air_revolutions = static_cast<int>(at.air.size());
   for (Eigen::Matrix3Xd& revolution : revolutions) revolution.colwise() -= out.zero_n;
 
-  const double count = static_cast<double>(revolutions.size());
-  out.revolutions = static_cast<int>(revolutions.size());
-  out.from_s = (static_cast<double>(begin) + first) / record.sample_rate_hz;
-  out.to_s = out.from_s + count / (speed.turns * record.sample_rate_hz);
-  const double rad_per_s = 2.0 * pi * record.sample_rate_hz;
-  out.spindle_speed_rad_per_s = speed.turns * rad_per_s;
-  out.spindle_speed_deviation_rad_per_s = speed.turns * rad_per_s * speed.angles.slope_deviation_rad / (2.0 * pi);
-  out.wander_rad = speed.angles.scatter_rad;
-  out.offset_deviation_rad = out.wander_rad / std::sqrt(count);
+  set_place(static_cast<double>(begin) + first, revolutions.size(), speed, out);
   out.rotation_rad = predicted.rotation_rad;
   describe(revolutions, out);
   check_signal(out, prediction);
