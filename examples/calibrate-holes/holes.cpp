@@ -55,9 +55,8 @@ void plan_countersunk(Hole& hole, double hole_m, Random& random) {
   hole.seconds = end_s + 0.27;
 }
 
-Hole draw(std::uint64_t index, Random& random) {
-  Hole hole;
-  draw_speed(hole, random);
+/// Material, runout and how stiff the robot stands.
+void draw_setup(Hole& hole, Random& random) {
   const double kt = random.uniform(600e6, 1000e6);
   hole.cut.coefficients = {.tangential_n_per_m2 = kt,
                            .radial_n_per_m2 = kt * random.uniform(0.3, 0.5),
@@ -69,6 +68,12 @@ Hole draw(std::uint64_t index, Random& random) {
   hole.cut.structure.right /= stiffer;
   hole.cut.structure.compliance /= stiffer;
   hole.cut.runout_m = random.uniform(2e-6, 1e-5);
+}
+
+Hole draw(std::uint64_t index, Random& random) {
+  Hole hole;
+  draw_speed(hole, random);
+  draw_setup(hole, random);
   const double drill_m = index / 2 % 2 == 0 ? 6e-3 : 5e-3;
   if (index % 2 == 0) {
     plan_drilled(hole, drill_m);
@@ -134,18 +139,26 @@ bool judge(Hole& hole, const simulation::Simulation& alone, const simulation::Si
   return true;
 }
 
-/// Noise, hum and a gain that is not quite known; idle time on both sides.
-void record(Hole& hole, const simulation::Simulation& cut, Random& random) {
+/// Noise, hum and a gain that is not quite known; idle time on both sides. The spindle's noise is always there; the
+/// cut's own is a share of the forced vibration and grows with the lips' width, so that no sample tells of chatter to
+/// come.
+void record(Hole& hole, const simulation::Simulation& cut, const simulation::Simulation& forced, Random& random) {
   const Eigen::Index rows = cut.acceleration_m_per_s2.rows();
   const double level =
-      std::sqrt(cut.acceleration_m_per_s2.leftCols<2>().squaredNorm() / (2.0 * static_cast<double>(rows)));
-  const double noise = random.uniform(0.5, 2.0) + level * random.uniform(0.05, 0.3);  // the spindle's and the cut's own
+      std::sqrt(forced.acceleration_m_per_s2.leftCols<2>().squaredNorm() / (2.0 * static_cast<double>(rows)));
+  const double spindle = random.uniform(0.5, 2.0);
+  const double own = level * random.uniform(0.05, 0.3);
+  const simulation::detail::Profile width(hole.cut.schedule.depth);
   const double hum = random.uniform(0.1, 1.0);
   const double gain = random.uniform(0.9, 1.1);
   hole.record.sample_rate_hz = hole_rate_hz;
   hole.record.acceleration_m_per_s2 = Columns::Zero(rows + 2 * idle, 3);
   hole.record.acceleration_m_per_s2.middleRows(idle, rows) = cut.acceleration_m_per_s2;
+  hole.record.displacement_m = Columns::Zero(rows + 2 * idle, 3);
+  hole.record.displacement_m.middleRows(idle, rows) = cut.displacement_m;
   for (Eigen::Index m = 0; m < rows + 2 * idle; ++m) {
+    const double cut_s = static_cast<double>(m - idle) / hole_rate_hz;
+    const double noise = spindle + (m >= idle && m < idle + rows ? own * width.at(cut_s) : 0.0);
     const double mains = hum * std::sin(2.0 * pi * 50.0 * static_cast<double>(m) / hole_rate_hz);
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       double& a = hole.record.acceleration_m_per_s2(m, axis);
@@ -154,23 +167,46 @@ void record(Hole& hole, const simulation::Simulation& cut, Random& random) {
   }
 }
 
-}  // namespace
-
-Hole simulate_hole(std::uint64_t seed, std::uint64_t index) {
-  Random random(seed, index);
+/// The first of a hundred draws that is clear, and does what is wanted of it.
+/// @throws InvalidInput if none is
+template <typename Draw, typename Wanted>
+Hole first_clear(Random& random, std::uint64_t index, Draw draw, Wanted wanted) {
   for (int draws = 1; draws <= 100; ++draws) {
-    Hole hole = draw(index, random);
+    Hole hole = draw(random);
     hole.draws = draws;
     const simulation::Simulation cut = run(hole.cut, hole.seconds, true);
     const simulation::Simulation forced = run(hole.cut, hole.seconds, false);
     DrillingCut alone = hole.cut;
     alone.runout_m *= 0.05;
-    if (!judge(hole, run(alone, hole.seconds, true), forced, cut)) continue;
-    record(hole, cut, random);
+    if (!judge(hole, run(alone, hole.seconds, true), forced, cut) || !wanted(hole)) continue;
+    record(hole, cut, forced, random);
     return hole;
   }
   throw InvalidInput("index", static_cast<double>(index), "",
-                     "gave no hole that is clearly stable or clearly chatters");
+                     "gave no hole that is clearly stable or clearly chatters, as is asked");
+}
+
+}  // namespace
+
+Hole simulate_hole(std::uint64_t seed, std::uint64_t index) {
+  Random random(seed, index);
+  return first_clear(
+      random, index, [index](Random& r) { return draw(index, r); }, [](const Hole&) { return true; });
+}
+
+Hole simulate_hole(const HoleConditions& conditions, bool chatter, std::uint64_t seed, std::uint64_t index) {
+  Random random(seed, index);
+  const auto given = [&conditions](Random& r) {
+    Hole hole;
+    hole.feed_m_per_s = conditions.feed_m_per_s;
+    hole.cut.spindle_speed_rad_per_s = conditions.spindle_speed_rad_per_s;
+    hole.cut.feed_per_revolution_m = conditions.feed_m_per_s * 2.0 * pi / conditions.spindle_speed_rad_per_s;
+    hole.cut.point_angle_rad = conditions.point_angle_rad;
+    draw_setup(hole, r);
+    plan_drilled(hole, conditions.diameter_m);
+    return hole;
+  };
+  return first_clear(random, index, given, [chatter](const Hole& hole) { return hole.chatter == chatter; });
 }
 
 }  // namespace robomill::examples

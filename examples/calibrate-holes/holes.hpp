@@ -14,7 +14,7 @@ struct Hole {
   simulation::DrillingCut cut;
   double feed_m_per_s = 0.0;
   double seconds = 0.0;           ///< of the cut, entry to exit
-  simulation::Simulation record;  ///< acceleration with noise, idle time before and after
+  simulation::Simulation record;  ///< acceleration with noise and displacement, idle time before and after
   bool chatter = false;
   double onset_s =
       0.0;        ///< where it chatters: from then on chatter is stronger than what runout forces, and than 1 m/s²
@@ -28,5 +28,19 @@ struct Hole {
 /// regeneration adds: the acceleration less that of the same cut with a rigid cutter's chips.
 /// @throws InvalidInput if a hundred draws give none that is clear
 [[nodiscard]] Hole simulate_hole(std::uint64_t seed, std::uint64_t index);
+
+/// What is known of a drilled hole.
+struct HoleConditions {
+  double diameter_m = 0.0, point_angle_rad = 0.0;
+  double spindle_speed_rad_per_s = 0.0, feed_m_per_s = 0.0;
+};
+/// A drilled hole under these; the rest is drawn as for the set, again until the hole is clear and does what is asked.
+/// @param chatter  what is asked: a hole with chatter, or a stable one
+/// @throws InvalidInput if a hundred draws give none
+[[nodiscard]] Hole simulate_hole(const HoleConditions& conditions, bool chatter, std::uint64_t seed,
+                                 std::uint64_t index);
+
+/// When the drill first touches the part [s] of the record.
+inline constexpr double hole_contact_s = 0.32;
 
 }  // namespace robomill::examples

@@ -1,6 +1,7 @@
 // The example on few holes, as its README runs it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -43,11 +44,11 @@ double passed_s(const Hole& hole, double threshold) {
   return -1.0;
 }
 
-// [EnergyEntropyChatter] prints a threshold of 105. In (m/s²)², of mean squares, every simulated hole with chatter
-// passes 105 before its chatter begins; about half do not pass 10⁵ before. No stable one passes either. So 10⁵ can
-// detect the onset on drills like the source's, and 105 cannot.
-TEST(PublishedThreshold, IsTenToTheFifthRatherThan105) {
-  int chatter = 0, early_105 = 0, found_1e5 = 0;
+// [EnergyEntropyChatter] prints a threshold of 105, most likely 10⁵ (docs/errata.md). In (m/s²)², of mean squares, no
+// simulated hole passes either before its chatter begins, and no stable one at all. The lower one finds more: the holes
+// do not tell which was meant.
+TEST(PublishedThreshold, IsPassedInChatterAlone) {
+  int chatter = 0, found_105 = 0, found_1e5 = 0;
   for (std::uint64_t k = 0; k < 12; ++k) {
     const Hole hole = simulate_hole(1, k);
     const double low_s = passed_s(hole, 105.0), high_s = passed_s(hole, 1e5);
@@ -56,12 +57,26 @@ TEST(PublishedThreshold, IsTenToTheFifthRatherThan105) {
       continue;
     }
     ++chatter;
-    early_105 += low_s >= 0.0 && low_s < hole.onset_s - 0.05 ? 1 : 0;
-    found_1e5 += high_s >= hole.onset_s - 0.05 ? 1 : 0;
+    EXPECT_TRUE(low_s < 0.0 || low_s >= hole.onset_s - 0.05) << k;
+    EXPECT_TRUE(high_s < 0.0 || high_s >= low_s) << k;
+    found_105 += low_s >= 0.0 ? 1 : 0;
+    found_1e5 += high_s >= 0.0 ? 1 : 0;
   }
   EXPECT_EQ(chatter, 7);
-  EXPECT_EQ(early_105, 7);
-  EXPECT_EQ(found_1e5, 4);
+  EXPECT_EQ(found_105, 7);
+  EXPECT_LT(found_1e5, found_105);
+}
+
+// Nothing before the tool's contact tells of chatter to come: the noise in air of holes with chatter is the spindle's,
+// of 2 m/s² at most, the hum 1 m/s² and the gain 10 % off.
+TEST(SimulateHole, IsQuietInAir) {
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    const Hole hole = simulate_hole(1, k);
+    const auto air = static_cast<Eigen::Index>(0.3 * hole_rate_hz);
+    const double rms = std::sqrt(hole.record.acceleration_m_per_s2.topRows(air).leftCols<2>().squaredNorm() /
+                                 (2.0 * static_cast<double>(air)));
+    EXPECT_LT(rms, 1.1 * std::sqrt(2.0 * 2.0 + 0.5) * 1.05) << k;
+  }
 }
 
 class CalibrateHoles : public ::testing::Test {
@@ -74,7 +89,7 @@ class CalibrateHoles : public ::testing::Test {
   test::Folder folder_;
 };
 
-// Of 480 holes the normalised form finds 98.7 % of the verifying half at 4.5 % false alarms; with 24 that half has
+// Of 480 holes the normalised form finds 96.7 % of the verifying half at 1.1 % false alarms; with 24 that half has
 // seven holes with chatter and five stable ones, of which one is a fifth.
 TEST_F(CalibrateHoles, FindsTheVerifyingHalf) {
   run("'" ROBOMILL_SIMULATE_HOLES "' holes 24 1");
