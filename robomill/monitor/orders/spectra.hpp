@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
@@ -51,10 +52,15 @@ struct Spectrum {
     const float up = lift(part);
     return up * up * (power[k] + part * (power[k + 1] - power[k]));
   }
-  /// Where a peak at line k stands between its neighbours, by the parabola through their powers.
+  /// Where a peak at line k stands between its neighbours, by the parabola through the logarithms of their powers: of
+  /// lines 1/(2T) apart within 0.01/T.
   [[nodiscard]] double peak_hz(std::size_t k, double before, double here, double after) const noexcept {
-    const double bend = before - 2.0 * here + after;
-    const double off = bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+    double off = 0.0;
+    if (before > 0.0 && here >= before && here >= after && after > 0.0) {
+      const double below = std::log(here / before);
+      const double above = std::log(here / after);
+      if (below + above > 0.0) off = std::clamp(0.5 * (below - above) / (below + above), -0.5, 0.5);
+    }
     return (static_cast<double>(k) + off) * step_hz;
   }
 };

@@ -95,6 +95,10 @@ TEST(Spectra, ShowTheAmplitudeOfASineBetweenLines) {
     const std::vector<float> power = power_of(own);
     const double place = tone.hz / own.step_hz;
     EXPECT_NEAR(own.power_at(power, place), tone.amplitude * tone.amplitude, 5e-3 * tone.amplitude * tone.amplitude);
+    const auto k = static_cast<std::size_t>(std::ranges::max_element(power) - power.begin());
+    const double read_hz = own.peak_hz(k, static_cast<double>(power[k - 1]), static_cast<double>(power[k]),
+                                       static_cast<double>(power[k + 1]));
+    EXPECT_NEAR(read_hz, tone.hz, 0.01 / own.seconds);
     std::array<float, 1> at_third = {};
     const std::array third = {static_cast<float>(place / 3.0)};
     ASSERT_EQ(at_multiple(power, own.dip, third, 3, power.size() - 1, at_third), 1U);

@@ -13,9 +13,11 @@ constexpr double weight = 30.0;  // of the evidence, against the prior
 constexpr int most_orders = 24, fewest_orders = 2;
 constexpr float first_teeth_weight = 4.0F, teeth_weight = 2.0F;  // counts an order of tooth passing
 constexpr double miscounted = 1e-4;                              // probability density of a measurement that is wrong
-constexpr double faint = 100.0;     // of an order's energy, in the second strongest one's: a fainter one counts less
-constexpr double peak_reach = 1.5;  // 1/T
-constexpr double agrees = 4.0;      // standard deviations
+constexpr double faint = 100.0;      // of an order's energy, in the second strongest one's: a fainter one counts less
+constexpr double peak_reach = 1.5;   // 1/T
+constexpr double flank_reach = 1.0;  // 1/T
+constexpr float flank = 0.15F;       // of a line's worth, where the peak beside it is ten times as strong
+constexpr double agrees = 4.0;       // standard deviations
 
 }  // namespace
 
@@ -70,9 +72,14 @@ void SpeedTracker::gather(std::span<const float> power, std::span<const float> f
   if (orders < fewest_orders) return;
   const auto lines = std::min(power.size(), static_cast<std::size_t>(orders * fastest_hz / like.step_hz) + 3);
   lines_seen_ = lines;
+  const auto beside = static_cast<std::size_t>(std::lround(flank_reach / (like.seconds * like.step_hz)));
   for (std::size_t i = 0; i < lines; ++i) {
     const float over = power[i] / (2.0F * floor[i] + 1e-30F);
-    worth_[i] = over > 1.0F ? std::min(1.0F, 0.5F * std::log10(over)) : 0.0F;
+    worth_[i] = 0.0F;
+    if (over <= 1.0F) continue;
+    const float peak = std::ranges::max(
+        power.subspan(i - std::min(i, beside)).first(std::min(i, beside) + std::min(beside, power.size() - 1 - i) + 1));
+    worth_[i] = std::max(0.0F, std::min(1.0F, 0.5F * std::log10(over)) - flank * std::log10(peak / power[i]));
   }
   for (std::size_t i = 0; i < size; ++i) {
     place_[i] = static_cast<float>(hint_hz_ * ratio_[i] / like.step_hz);

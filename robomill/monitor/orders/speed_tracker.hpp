@@ -11,8 +11,9 @@ namespace robomill::monitor {
 ///
 /// A line at ν with power P over the noise's floor F counts v(ν) = log₁₀(P/2F)/2, from 0 (3 dB) to 1 (23 dB): however
 /// strong it is, it counts no more, so a chatter line that meets a multiple of a wrong speed draws it by one part in
-/// some twenty. A candidate's evidence is the mean of v over its first orders, at most 24, those of tooth passing
-/// twice and the first of these four times, with a memory of 1 s. The most likely speed is where
+/// some twenty. On the flank of a peak P', within 1/T, it counts 0.15 log₁₀(P'/P) less: a wrong speed meets the low
+/// orders at their flanks. A candidate's evidence is the mean of v over its first orders, at most 24, those of tooth
+/// passing twice and the first of these four times, with a memory of 1 s. The most likely speed is where
 ///   30 e(f) - ln(1 + (ln(f/hint)/σ)²)
 /// is greatest: the prior is a Cauchy distribution of the hint's relative deviation σ. Nothing is allocated after
 /// construction.

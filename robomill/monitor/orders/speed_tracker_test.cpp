@@ -32,9 +32,9 @@ SpeedTracker tracker(double hint_hz, int teeth) {
 }
 
 /// Hop by hop, once the window is full.
-/// @param pulses_hz  measured in each hop; 0: not
-void listen(SpeedTracker& speed, const std::vector<float>& x, double pulses_hz = 0.0) {
-  Spectra spectra(rate_hz, 1, usual_windows_s);
+/// @param pulses_hz  measured in each hop; 0: not;  @param sample_rate_hz  of x
+void listen(SpeedTracker& speed, const std::vector<float>& x, double pulses_hz = 0.0, double sample_rate_hz = rate_hz) {
+  Spectra spectra(sample_rate_hz, 1, usual_windows_s);
   const Spectrum& like = spectra.spectrum(0, 0);
   NoiseFloor floor(like.line.size());
   for (std::size_t at = 0; at + hop <= x.size(); at += hop) {
@@ -80,6 +80,18 @@ TEST(SpeedTracker, AStrongLineBesideTheCombDoesNotDrawIt) {
       tones.push_back({order * 80.0, amplitude});
       listen(speed, sum_of(tones, rate_hz, 1.5, 0.02));
       EXPECT_NEAR(speed.rotation_hz(), 80.0, 0.15) << order << " " << amplitude;
+    }
+  }
+}
+
+// A speed 2 % off meets tooth passing at the flank of its lines, and with a high order the line that is no order.
+TEST(SpeedTracker, TheFlanksOfToothPassingCountLessThanItsLines) {
+  for (const double sample_rate_hz : {5120.0, 8000.0, 10240.0}) {
+    for (const double foreign_hz : {517.0, 733.0, 881.0}) {
+      SpeedTracker speed = tracker(50.0, 3);
+      const std::vector<Tone> tones = {{150.0, 0.1}, {300.0, 0.1}, {foreign_hz, 0.02}};
+      listen(speed, sum_of(tones, sample_rate_hz, 2.0, 0.002), 0.0, sample_rate_hz);
+      EXPECT_NEAR(speed.rotation_hz(), 50.0, 0.1) << sample_rate_hz << " " << foreign_hz;
     }
   }
 }
