@@ -93,7 +93,8 @@ std::vector<double> jerks(const Run& run, double period_s) {
   return out;
 }
 
-/// The drives of [smoothing], all joints alike, with another frequency of the servo or of the load on a spring behind it.
+/// The drives of [smoothing], all joints alike, with another frequency of the servo or of the load on a spring behind
+/// it.
 struct Drives {
   const path::SmoothingFile& smoothing;
   [[nodiscard]] path::Drive servo(double hz) const {
@@ -173,10 +174,10 @@ std::string motion_csv(const Run& run, const Drives& drives, double limit, doubl
   for (std::size_t i = 0; i < run.samples.size(); ++i) {
     const path::Sample& at = run.samples[i];
     const robot::ToolJet jet = run.plan.trajectory.at(at.time_s);
-    text += fmt::format("{:.3f},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{:.4f}\n", at.time_s, at.block + 1,
-                        1e3 * at.tip_m.x(), 1e3 * at.tip_m.y(), 1e3 * jet.tip_m.col(1).norm(),
-                        jet.axis.col(1).norm() * 180.0 / std::numbers::pi, jerk[i], limit, -limit,
-                        1e6 * error[i][tracked]);
+    text +=
+        fmt::format("{:.3f},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{:.4f}\n", at.time_s, at.block + 1,
+                    1e3 * at.tip_m.x(), 1e3 * at.tip_m.y(), 1e3 * jet.tip_m.col(1).norm(),
+                    jet.axis.col(1).norm() * 180.0 / std::numbers::pi, jerk[i], limit, -limit, 1e6 * error[i][tracked]);
   }
   return text;
 }
@@ -259,7 +260,8 @@ std::string drives_csv(const Run& earlier, const Run& paper, const Drives& drive
   return text;
 }
 
-void write(const std::filesystem::path& program, const std::filesystem::path& cell, const std::filesystem::path& folder) {
+void write(const std::filesystem::path& program, const std::filesystem::path& cell,
+           const std::filesystem::path& folder) {
   const Inputs in = read(program, cell);
   const path::Posture posture = posture_of(in, program);
   const double period_s = in.smoothing.options.sample_period_s;
