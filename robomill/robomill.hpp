@@ -58,6 +58,7 @@
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/postures.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/smooth.hpp"

@@ -360,35 +360,52 @@ void warn_of_lowest(const Cell& cell, ModesOfPosture& out) {
       cell.path.string(), lowest_hz));
 }
 
-}  // namespace
-
-ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_given,
-                             PostureAxes axes, Progress& progress) {
-  const CellFile cell = read_cell(path);
-  require_posture(cell.robot.arm, joints_given);
+ModesOfPosture modes_at(const CellFile& cell, const CellDynamics& dynamics, const std::vector<double>& joints_given,
+                        PostureAxes axes) {
   ModesOfPosture out;
   out.joints = joints_given;
   const Eigen::VectorXd joints = to_vector(out.joints);
-  CellDynamics dynamics = cell_dynamics(cell, progress);
   try {
     out.prediction = dynamics.at(joints);
   } catch (const InvalidInput& error) {
-    throw within(path.string() + ": ", error);
+    throw within(cell.path.string() + ": ", error);
   }
   out.unmatched = dynamics.unmatched(out.prediction);
   out.report = dynamics.model->report();
   out.direct_deviation = dynamics.model->direct_deviation(joints);
-  out.warnings = std::move(dynamics.warnings);
-  out.notes = std::move(dynamics.notes);
+  out.warnings = dynamics.warnings;
+  out.notes = dynamics.notes;
   std::vector<std::string> of_cell = cell.notes;
   std::ranges::move(io::take_warnings(of_cell), std::back_inserter(out.warnings));
   warn_of_lowest(cell, out);
-  out.assumed = std::move(dynamics.assumed);
+  out.assumed = dynamics.assumed;
   const double along = robot::forward(cell.robot.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));
   if (axes == PostureAxes::flange) {
     out.prediction.modes = turned(out.prediction.modes, flange_axes(cell, joints).transpose(), "joints");
   }
+  return out;
+}
+
+}  // namespace
+
+ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints, PostureAxes axes,
+                             Progress& progress) {
+  const CellFile cell = read_cell(path);
+  require_posture(cell.robot.arm, joints);
+  return modes_at(cell, cell_dynamics(cell, progress), joints, axes);
+}
+
+std::vector<ModesOfPosture> modes_of_postures(const std::filesystem::path& path, PostureAxes axes, Progress& progress) {
+  const CellFile cell = read_cell(path);
+  if (cell.postures.empty()) {
+    throw InvalidInput(path.string(), "has no [[postures]]", "Give joints_deg and frf or modes of each");
+  }
+  for (const PostureEntry& entry : cell.postures) require_posture(cell.robot.arm, entry.joints);
+  const CellDynamics dynamics = cell_dynamics(cell, progress);
+  std::vector<ModesOfPosture> out;
+  out.reserve(cell.postures.size());
+  for (const PostureEntry& entry : cell.postures) out.push_back(modes_at(cell, dynamics, entry.joints, axes));
   return out;
 }
 

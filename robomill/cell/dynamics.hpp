@@ -68,6 +68,12 @@ struct ModesOfPosture {
                                                         PostureAxes axes = PostureAxes::base,
                                                         Progress& progress = Progress::none());
 
+/// The same of each of the cell's [[postures]], in their order, by one calibration.
+/// @throws InvalidInput also where the cell has none
+[[nodiscard]] ROBOMILL_API std::vector<ModesOfPosture> modes_of_postures(const std::filesystem::path& cell,
+                                                                         PostureAxes axes = PostureAxes::base,
+                                                                         Progress& progress = Progress::none());
+
 /// What to do about axes that nobody hit along, where the cut depends on them: a sentence, empty where all were
 /// measured.
 /// @param deviation  of xx, yy and zz

@@ -25,6 +25,7 @@ struct JointResult;
 struct LobesJobResult;
 struct ModesResult;
 struct PlanResult;
+struct PosturesResult;
 struct SimulateResult;
 struct SignalCoefficientsResult;
 struct StiffnessResult;
@@ -38,6 +39,7 @@ enum class Document {
   modes,
   joint,
   lobes,
+  postures,
   explanation,
   simulation,
   forces,
@@ -60,6 +62,7 @@ void require_output(Document document, const std::filesystem::path& path);
 [[nodiscard]] std::string document(const ToolsResult& result, io::Format format);
 [[nodiscard]] std::string document(const JointResult& result, io::Format format);
 [[nodiscard]] std::string document(const LobesJobResult& result, io::Format format);
+[[nodiscard]] std::string document(const PosturesResult& result, io::Format format);
 [[nodiscard]] std::string document(const ExplainResult& result, io::Format format);
 [[nodiscard]] std::string document(const SimulateResult& result, io::Format format);
 [[nodiscard]] std::string document(const process::ForcesResult& result, io::Format format);
@@ -113,6 +116,9 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] inline std::string shortfall(const LobesJobResult& /*result*/) {
   return {};
 }
+[[nodiscard]] inline std::string shortfall(const PosturesResult& /*result*/) {
+  return {};
+}
 [[nodiscard]] inline std::string shortfall(const ExplainResult& /*result*/) {
   return {};
 }
@@ -127,6 +133,7 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] std::string summary(const ToolsResult& result);
 [[nodiscard]] std::string summary(const JointResult& result);
 [[nodiscard]] std::string summary(const LobesJobResult& result);
+[[nodiscard]] std::string summary(const PosturesResult& result);
 [[nodiscard]] std::string summary(const ExplainResult& result);
 [[nodiscard]] std::string summary(const SimulateResult& result);
 [[nodiscard]] std::string summary(const CoefficientsResult& result);
@@ -144,6 +151,7 @@ void require_holder(const TipPrediction& result, const std::string& option);
 [[nodiscard]] page::Report page_of(const ToolsResult& result);
 [[nodiscard]] page::Report page_of(const JointResult& result);
 [[nodiscard]] page::Report page_of(const LobesJobResult& result);
+[[nodiscard]] page::Report page_of(const PosturesResult& result);
 [[nodiscard]] page::Report page_of(const ExplainResult& result);
 [[nodiscard]] page::Report page_of(const SimulateResult& result);
 [[nodiscard]] page::Report page_of(const process::ForcesResult& result);

@@ -38,6 +38,7 @@ struct Report {
   std::string tools = {};                ///< the table of a list of tools as JSON; empty: none
   std::string sweep = {};                ///< lobes.json of a sweep; empty: none
   std::string comparison = {};           ///< lobes.json of methods compared; empty: none
+  std::string postures = {};             ///< postures.json; empty: none
   std::string explanation = {};          ///< explain.json; empty: none
   std::string simulation = {};           ///< simulation.json; empty: none
   std::string vibration = {};            ///< its columns, recorded for the page alone; empty: none

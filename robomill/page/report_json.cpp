@@ -290,6 +290,7 @@ Json page_data(const Report& report) {
                                        {"tools", &Report::tools},
                                        {"sweep", &Report::sweep},
                                        {"comparison", &Report::comparison},
+                                       {"postures", &Report::postures},
                                        {"explanation", &Report::explanation},
                                        {"simulation", &Report::simulation},
                                        {"vibration", &Report::vibration},

@@ -171,6 +171,28 @@ std::string sample_comparison(const std::string& text) {
   return json.dump();
 }
 
+std::string sample_postures() {
+  Json json = {{"document", "postures/1"}, {"spindle_speed_rpm", Json::array()}, {"postures", Json::array()}};
+  for (int i = 0; i <= 60; ++i) json["spindle_speed_rpm"].push_back(4000.0 + 200.0 * i);
+  constexpr std::array<double, 4> x_mm = {1270.0, 1670.0, 2070.0, 1270.0};
+  for (std::size_t p = 0; p < x_mm.size(); ++p) {
+    Json limits = Json::array();
+    for (const Json& at_rpm : json["spindle_speed_rpm"]) {
+      const double limit_mm = (1.0 - 0.12 * static_cast<double>(p)) * 0.3 / (radius(at_rpm.get<double>(), 1.0) - 0.55);
+      limits.push_back(limit_mm < 3.0 ? Json(limit_mm) : Json());
+    }
+    json["postures"].push_back({{"number", p + 1},
+                                {"joints_deg", {-11.1, -11.5, 21.6, 0.0, 79.9, 101.1}},
+                                {"tip_mm", {x_mm.at(p), -250.0, 776.0}},
+                                {"axis", {0.0, 0.0, 1.0}},
+                                {"gamma_deg", p < 3 ? 90.0 : 150.0},
+                                {"limit_mm", limits}});
+  }
+  json["directions"] = {{{"direction", "x"}, {"postures", {1, 2, 3}}, {"spread", 0.27}, {"speeds", 52}},
+                        {{"direction", "gamma"}, {"postures", {1, 4}}, {"spread", nullptr}, {"speeds", 0}}};
+  return json.dump();
+}
+
 std::string sample_explanation() {
   Json json = {{"document", "explain/1"},
                {"spindle_speed_rpm", speed_rpm},

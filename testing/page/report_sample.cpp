@@ -35,6 +35,7 @@ Report sample_report() {
   report.tools = sample_tools();
   report.sweep = sample_sweep();
   report.comparison = sample_comparison();
+  report.postures = sample_postures();
   report.explanation = sample_explanation();
   report.simulation = sample_simulation();
   report.vibration = sample_vibration();

@@ -25,6 +25,7 @@ export const members = {
   tools: 'tools',
   sweep: 'sweep',
   comparison: 'comparison',
+  postures: 'postures',
   explanation: 'explain',
   simulation: 'simulation',
   vibration: 'vibration', // of the simulated cut
@@ -39,6 +40,7 @@ export type Assumption = Documents['forces']['assumed'][number];
 export type LobesDocument = Documents['lobes'];
 export type SweepDocument = Documents['sweep'];
 export type ComparisonDocument = Documents['comparison'];
+export type PosturesDocument = Documents['postures'];
 /** The limit at one speed. */
 export type LimitRow = LobesDocument['limit'][number];
 export type LobesPoint = LobesDocument['points'][number];

@@ -1,5 +1,5 @@
 // lobes.json with all of its parts, of a sweep and of methods, for tests.
-import type { ComparisonDocument, LobesDocument, LobesPoint, SweepDocument } from './documents';
+import type { ComparisonDocument, LobesDocument, LobesPoint, PosturesDocument, SweepDocument } from './documents';
 
 const limit: LobesDocument['limit'] = [
   { spindle_speed_rpm: 4000, axial_depth_mm: 0.5, chatter_frequency_hz: 540, kind: 'hopf', mode: 2, mode_of: 'tool', error_estimate: 1e-6 },
@@ -80,5 +80,21 @@ export const comparisonSample: ComparisonDocument = {
     { method: 'collocation', limit_mm: [0.5, null], median_error: 0, worst_error: 0, differ: 0, rejection: '', seconds: 1 },
     { method: 'zeroth-order', limit_mm: [], median_error: null, worst_error: null, differ: 0, rejection: 'a ball end', seconds: 0 },
     { method: 'multi-frequency', limit_mm: [0.55, 1.5], median_error: 0.1, worst_error: 0.1, differ: 1, rejection: '', seconds: 2 },
+  ],
+};
+
+const posture = { joints_deg: [0, 10, 20, 0, 60, 0], axis: [0, 0, 1], gamma_deg: 90 };
+
+export const posturesSample: PosturesDocument = {
+  document: 'postures/1',
+  spindle_speed_rpm: [4000, 6000],
+  postures: [
+    { ...posture, number: 1, tip_mm: [1270, 0, 776], limit_mm: [0.5, null] },
+    { ...posture, number: 2, tip_mm: [1670, 0, 776], limit_mm: [0.4, 1.5] },
+    { ...posture, number: 3, tip_mm: [1270, 0, 776], gamma_deg: 150, limit_mm: [0.45, 1.25] },
+  ],
+  directions: [
+    { direction: 'x', postures: [1, 2], spread: 0.22, speeds: 1 },
+    { direction: 'gamma', postures: [1, 3], spread: null, speeds: 0 },
   ],
 };

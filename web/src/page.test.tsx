@@ -39,6 +39,7 @@ function empty(): Report {
     tools: null,
     sweep: null,
     comparison: null,
+    postures: null,
     explanation: null,
     simulation: null,
     vibration: null,
@@ -71,7 +72,7 @@ it('shows every part of a report', () => {
   }
   for (const id of [
     'lobes', 'feed', 'program', 'forces', 'smooth', 'cell', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration',
-    'peaks', 'simulation', 'sweep', 'comparison', 'coefficients', 'stiffness', 'tools', 'joint',
+    'peaks', 'simulation', 'sweep', 'comparison', 'postures', 'coefficients', 'stiffness', 'tools', 'joint',
   ]) {
     expect(html).toContain(`<section id="${id}"`);
     expect(html).toContain(`href="#${id}"`);

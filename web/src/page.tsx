@@ -17,6 +17,7 @@ import { RecordingsSection } from './sections/recordings';
 import { SimulationSection } from './sections/simulation';
 import { SmoothSection } from './sections/smooth';
 import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
+import { PosturesSection } from './sections/postures';
 import { ComparisonSection, SweepSection } from './sections/sweep';
 import { ToolsSection } from './sections/tools';
 import { Selection } from './selection';
@@ -30,7 +31,7 @@ interface Entry {
 
 function entries(report: Report): Entry[] {
   const { plan, monitor, calibration, forces, blocks, smooth, cell, assembly, recordings, files } = report;
-  const { explanation, simulation, sweep, comparison, tools, joint, coefficients, stiffness } = report;
+  const { explanation, simulation, sweep, comparison, postures, tools, joint, coefficients, stiffness } = report;
   const { cuts = [], pairs = [], feed_directions: feed = [] } = plan ?? {};
   const notes = [...(plan?.notes ?? []), ...report.notes];
   const lobes = report.lobes && lobesOf(report.lobes);
@@ -45,6 +46,7 @@ function entries(report: Report): Entry[] {
     { id: 'lobes', name: 'Lobes', content: (lobes || cuts.length > 0) && <LobesSection lobes={lobes} plan={plan} document={report.lobes} /> },
     { id: 'sweep', name: 'Sweep', content: sweep && <SweepSection sweep={sweep} /> },
     { id: 'comparison', name: 'Methods', content: comparison && <ComparisonSection comparison={comparison} /> },
+    { id: 'postures', name: 'Postures', content: postures && <PosturesSection document={postures} /> },
     { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
     { id: 'program', name: 'Program', content: blocks && <ProgramSection document={blocks} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },

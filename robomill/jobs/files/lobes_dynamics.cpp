@@ -19,15 +19,20 @@
 namespace robomill::jobs {
 namespace {
 
-/// The modes of the cell's posture, with the uncertainty that they come with.
-void load_posture(LobesFile& file, Progress& progress) {
-  const auto posture = std::make_shared<cell::ModesOfPosture>();
+std::shared_ptr<const cell::ModesOfPosture> posture_of(const LobesFile& file, Progress& progress) {
+  auto posture = std::make_shared<cell::ModesOfPosture>();
   const auto find = [&] { *posture = cell::posture_modes(file.cell, file.joints, file.posture_axes, progress); };
   if (file.document) {
     file.document->locate(find);
   } else {
     find();
   }
+  return posture;
+}
+
+}  // namespace
+
+void take_posture(LobesFile& file, std::shared_ptr<const cell::ModesOfPosture> posture) {
   file.problem.dynamics = posture->prediction.modes;
   // An upright cut in the plane of base x and y asks for nothing of base z.
   const bool along_z = file.problem.in_three_directions() || file.posture_axes != cell::PostureAxes::base;
@@ -48,16 +53,14 @@ void load_posture(LobesFile& file, Progress& progress) {
     file.uncertainty.samples = 100;
     file.uncertainty.grid = {40, 30};
   }
-  file.posture = posture;
+  file.posture = std::move(posture);
 }
-
-}  // namespace
 
 void load_dynamics(LobesFile& file, Progress& progress) {
   if (!file.job.empty() && !file.dropped_dynamics) {
     return take_plan(file, run_structure(file.job, default_seed, progress));
   }
-  if (!file.cell.empty()) load_posture(file, progress);
+  if (!file.cell.empty()) take_posture(file, posture_of(file, progress));
   if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes, file.notes);
   if (!file.workpiece_modes.empty()) {
     file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes, file.notes);

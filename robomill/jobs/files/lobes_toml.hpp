@@ -75,6 +75,9 @@ struct LobesFile {
 ///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file, Progress& progress = Progress::none());
 
+/// Takes the modes of a cell's posture as the tool's structure, with the uncertainty that they come with.
+ROBOMILL_API void take_posture(LobesFile& file, std::shared_ptr<const cell::ModesOfPosture> posture);
+
 /// The sweep that its table [lobes] asks for. Points of an angle were read as mm and are degrees.
 [[nodiscard]] ROBOMILL_API stability::SweepOptions sweep_options(const LobesFile& file);
 

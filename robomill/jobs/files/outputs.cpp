@@ -15,6 +15,7 @@
 #include "robomill/jobs/calibrate.hpp"
 #include "robomill/jobs/coefficients.hpp"
 #include "robomill/jobs/explain.hpp"
+#include "robomill/jobs/files/postures_json.hpp"
 #include "robomill/jobs/files/signal_json.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
@@ -44,7 +45,7 @@ struct Endings {
   const char* rule;
 };
 constexpr Format none = Format::json;
-constexpr std::array<Endings, 14> endings = {
+constexpr std::array<Endings, 15> endings = {
     {{Document::frfs,
       {Format::uff, Format::csv, Format::text, Format::mat},
       "FRFs are written as .uff, .csv, .txt, .mat or .json"},
@@ -52,6 +53,7 @@ constexpr std::array<Endings, 14> endings = {
      {Document::modes, {Format::csv, none, none, none}, "modes are written as .csv or .json"},
      {Document::joint, {Format::csv, none, none, none}, "joints are written as .csv or .json"},
      {Document::lobes, {Format::csv, none, none, none}, "lobes are written as .csv or .json"},
+     {Document::postures, {Format::csv, none, none, none}, "limits of postures are written as .csv or .json"},
      {Document::explanation, {Format::csv, none, none, none}, "explanations are written as .csv or .json"},
      {Document::simulation,
       {Format::csv, Format::mat, Format::wav, none},
@@ -106,6 +108,9 @@ std::string document(const JointResult& result, Format format) {
 }
 std::string document(const LobesJobResult& result, Format format) {
   return format == Format::csv ? lobes_table(result) : lobes_document(result);
+}
+std::string document(const PosturesResult& result, Format format) {
+  return format == Format::csv ? postures_csv(result) : io::dump(postures_table().write(result));
 }
 std::string document(const ExplainResult& result, Format format) {
   if (format == Format::csv) return stability::peaks_csv(result.peaks);

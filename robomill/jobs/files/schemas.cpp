@@ -23,6 +23,7 @@
 #include "robomill/jobs/files/job_schema.hpp"
 #include "robomill/jobs/files/lobes_schema.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/files/postures_json.hpp"
 #include "robomill/jobs/files/signal_json.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
 #include "robomill/modal/files/frf_schema.hpp"
@@ -205,6 +206,7 @@ const std::vector<Entry>& documents() {
                                    &lobes_json_table().info(),
                                    &stability::sweep_table().info(),
                                    &stability::comparison_table().info(),
+                                   &postures_table().info(),
                                    &stability::explain_table().info(),
                                    &path::smooth_table().info(),
                                    &path::motion_table().info(),

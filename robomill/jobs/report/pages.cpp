@@ -14,6 +14,7 @@
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/files/postures_json.hpp"
 #include "robomill/jobs/frf.hpp"
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
@@ -122,6 +123,14 @@ page::Report page_of(const LobesJobResult& result) {
   document = lobes_document(result);
   page.notes = result.cut.notes;
   page.assumed = assumed_of(result.cut, surface ? CutUse::motion : CutUse::stability);
+  return page;
+}
+
+page::Report page_of(const PosturesResult& result) {
+  page::Report page = titled("Postures side by side", summary(result));
+  page.postures = io::dump(postures_table().write(result));
+  page.notes = result.cut.notes;
+  page.assumed = assumed_of(result.cut, CutUse::stability);
   return page;
 }
 

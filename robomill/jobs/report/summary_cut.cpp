@@ -15,6 +15,7 @@
 #include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/outputs.hpp"
+#include "robomill/jobs/postures.hpp"
 #include "robomill/jobs/simulate.hpp"
 
 // A cut: its stability, its vibration, its coefficients.
@@ -261,6 +262,39 @@ std::string summary(const LobesJobResult& result) {
   io::add_notes(out, result.cut.notes, "Note: ");
   const bool surface = result.surface.axial_depth_m.size() > 0;
   return out + assumed_text(assumed_of(result.cut, surface ? CutUse::motion : CutUse::stability));
+}
+
+std::string summary(const PosturesResult& result) {
+  std::string out;
+  io::append(out, "{:<8}{:>28}{:>10}{:>16}{:>12}\n", "posture", "tip x, y, z (mm)", "γ (°)", "lowest limit", "at");
+  for (const PostureLimits& row : result.postures) {
+    const stability::Limit* least = nullptr;
+    for (const stability::Limit& limit : row.limits) {
+      if (limit.status != stability::Limit::Status::found) continue;
+      if (least == nullptr || limit.axial_depth_m < least->axial_depth_m) least = &limit;
+    }
+    const Eigen::Vector3d tip_mm = row.pose.tip_m / units::mm;
+    const std::string tip = fmt::format("{:.0f}, {:.0f}, {:.0f}", tip_mm.x(), tip_mm.y(), tip_mm.z());
+    io::append(out, "{:<8}{:>28}{:>10.1f}", row.number, tip, row.pose.gamma_rad / units::deg);
+    if (least == nullptr) {
+      io::append(out, "{:>16}\n", "none");
+    } else {
+      io::append(out, "{:>13.4g} mm{:>8.0f} rpm\n", least->axial_depth_m / units::mm,
+                 least->spindle_speed_rad_per_s / units::rpm);
+    }
+  }
+  for (const PostureDirection& direction : result.directions) {
+    io::append(out, "Along {}: postures {}, ", direction.name, fmt::join(direction.postures, ", "));
+    if (direction.speeds == 0) {
+      io::append(out, "which have a limit in common at no speed.\n");
+    } else {
+      io::append(out, "limits {} apart (mean over {} of {} speeds).\n", percent_of(direction.spread), direction.speeds,
+                 result.spindle_speed_rad_per_s.size());
+    }
+  }
+  if (result.directions.empty()) io::append(out, "No two postures differ in one direction alone.\n");
+  io::add_notes(out, result.cut.notes, "Note: ");
+  return out + assumed_text(assumed_of(result.cut, CutUse::stability));
 }
 
 std::string summary(const ExplainResult& result) {

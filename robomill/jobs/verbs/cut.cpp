@@ -5,6 +5,7 @@
 #include "robomill/jobs/explain.hpp"
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/postures.hpp"
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/verbs/records.hpp"
 
@@ -20,6 +21,14 @@ Outcome run_lobes_verb(const VerbJob& job, Progress& progress) {
       job,
       run_lobes({.lobes = job.input(), .points = job.points("at"), .compare = job.flag("compare"), .seed = job.seed()},
                 progress));
+}
+
+Outcome run_postures_verb(const VerbJob& job, Progress& progress) {
+  if (!job.flag("postures")) {
+    throw InvalidInput(job.named("postures"), "must be set: one chart of all [[postures]] is what a cell gives alone",
+                       "For one posture give lobes.toml with dynamics.cell and joints_deg");
+  }
+  return finished(job, run_postures({.cell = job.input(), .cut = job.file("cut")}, progress));
 }
 
 Outcome run_simulate_verb(const VerbJob& job, Progress& progress) {
@@ -134,6 +143,27 @@ Verb lobes_verb() {
                       flag_option("compare", "the limits by every method: error against collocation and time"),
                       seed_option()},
           .run = &run_lobes_verb};
+}
+
+Verb postures_verb() {
+  return {
+      .name = "lobes --cell",
+      .button = "Compare postures",
+      .purpose = "the limits of a cut in each posture that a cell was measured in",
+      .more = "In one chart, and how far they lie apart by direction: x, y, z of the tip, a turn about its axis.",
+      .example = "lobes --cell cell.toml --postures --cut cut.toml -o postures.json",
+      .readme = "robomill/stability/README.md",
+      .input = {.name = "cell",
+                .meaning = "cell.toml with [[postures]]",
+                .takes = Takes::file,
+                .required = true,
+                .flag = "--cell",
+                .kinds = {"cell"}},
+      .output = "postures.json",
+      .document = Document::postures,
+      .options = {flag_option("postures", "each of its [[postures]]"),
+                  file_option("cut", "lobes.toml of the cut, whose structure does not count", {"lobes", "job"}, true)},
+      .run = &run_postures_verb};
 }
 
 Verb simulate_verb() {
@@ -298,7 +328,8 @@ Verb signal_verb() {
 }  // namespace
 
 std::vector<Verb> cut_verbs() {
-  return {lobes_verb(), simulate_verb(), explain_verb(), forces_verb(), coefficients_verb(), signal_verb()};
+  return {lobes_verb(),  postures_verb(),     simulate_verb(), explain_verb(),
+          forces_verb(), coefficients_verb(), signal_verb()};
 }
 
 }  // namespace robomill::jobs

@@ -327,7 +327,7 @@ TEST_F(JobVerbs, AreListedForThePage) {
     }
   }
   EXPECT_EQ(names.size(), list.size());
-  EXPECT_EQ(names.size(), 16U);
+  EXPECT_EQ(names.size(), 17U);
 }
 
 }  // namespace job_verbs_test

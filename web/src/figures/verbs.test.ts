@@ -1,11 +1,12 @@
 import { describe, expect, it } from 'vitest';
 import type { ExplanationDocument, Slot, StiffnessDocument, ToolRow, VibrationDocument } from '../documents';
-import { comparisonSample, lobesSample, pointSample, sweepSample } from '../lobes_sample';
+import { comparisonSample, lobesSample, pointSample, posturesSample, sweepSample } from '../lobes_sample';
 import { sampleReport } from '../report_sample';
 import { displacementFigure, jointsFigure, slotResidualFigure, slotsFigure } from './identified';
 import { pointTraces, surfaceFigure } from './lobes';
 import { peaksFigure } from './peaks';
 import { timeFigure, vibrationSpectrumFigure } from './simulation';
+import { posturesFigure } from './postures';
 import { comparisonFigure, sweepFigure } from './sweep';
 import { dark, light } from './theme';
 import { toolsFigure } from './tools';
@@ -44,6 +45,14 @@ describe('methods', () => {
     const { data } = comparisonFigure(comparisonSample, light);
     expect(data.map((trace) => trace['name'])).toEqual(['collocation', 'multi-frequency']);
     expect(new Set(data.map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(2);
+  });
+});
+
+describe('postures', () => {
+  it('are a line each, with gaps where there is no limit', () => {
+    const { data } = posturesFigure(posturesSample, light);
+    expect(data.map((trace) => trace['name'])).toEqual(['posture 1', 'posture 2', 'posture 3']);
+    expect(data[0]).toMatchObject({ y: [0.5, null], connectgaps: false });
   });
 });
 

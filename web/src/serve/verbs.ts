@@ -59,6 +59,7 @@ export const kindNames: Record<FileKind, string> = {
 const documentNames: Record<string, string> = {
   plan: 'a plan',
   lobes: 'lobes',
+  postures: 'limits by posture',
   blocks: 'stability of each block',
   forces: 'cutting forces',
   trajectory: 'a trajectory',
