@@ -28,9 +28,10 @@ struct PredictedRevolution {
 
 struct ROBOMILL_API MeasuredForceOptions {
   double spindle_speed_rad_per_s = 0.0;  ///< Ω as given [rad/s], > 0; required
-  double speed_tolerance = 0.01;         ///< relative; the record's own speed is sought within it, in [0, 0.1]
-  double from_s = 0.0;                   ///< of the record, where to_s is finite: the stretch in the cut
-  double to_s = std::numeric_limits<double>::infinity();  ///< infinite: the stretch is found
+  double speed_tolerance = 0.01;         ///< relative; the record's own speed is sought within it, in [0, 0.1] and
+                                         ///< at most 0.4 / N: beyond it N teeth look like N ± 1 at another speed
+  double from_s = 0.0;                   ///< of the record: the stretch in the cut
+  double to_s = std::numeric_limits<double>::infinity();  ///< its end; the stretch is found where neither is given
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -60,7 +61,7 @@ struct MeasuredForce {
   double offset_deviation_rad = 0.0;  ///< … and of the mean one: at from_s tooth 0 stood at the prediction's first step
 
   int air_revolutions = 0;                           ///< whose mean was taken off; 0: forces are as recorded
-  Eigen::Vector3d zero_n = Eigen::Vector3d::Zero();  ///< that mean
+  Eigen::Vector3d zero_n = Eigen::Vector3d::Zero();  ///< that mean, of air before and after the cut at its middle
   Eigen::Vector3d drift_n;  ///< of a revolution's mean from from_s to to_s; taken out about its middle
 
   Eigen::VectorXd rotation_rad;  ///< length m, those of the prediction
@@ -73,7 +74,9 @@ struct MeasuredForce {
   Eigen::Vector3d between_teeth_n;  ///< root mean square of what differs from tooth to tooth in the mean revolution
   Eigen::Vector3d predicted_mean_n, predicted_peak_n, predicted_rms_n;  ///< of what it was compared with
 
-  Eigen::Vector3d error_n;            ///< root mean square of predicted less measured
+  /// Root mean square of predicted less measured. The noise of the mean revolution, scatter_n / √revolutions, is in it;
+  /// the offset, a free parameter, makes it smaller.
+  Eigen::Vector3d error_n;
   Eigen::Vector3d error_ratio;        ///< over rms_n
   Eigen::Vector3d shape_error_n;      ///< the same without the means
   Eigen::Vector3d shape_error_ratio;  ///< over the measured root mean square without its mean
@@ -89,11 +92,13 @@ struct MeasuredForce {
 
 /// Cuts the record into revolutions, averages them and lays the prediction over them.
 ///
-/// The stretch in the cut is the longest run of revolutions whose force varies by more than half of the strongest
-/// (their 90 % quantile), 200 revolutions at most, those in its middle; five revolutions or more that vary by less than
-/// a tenth of it are air, whose mean is taken off. The speed maximises Σ_k |X(kΩ)|² over the harmonics of rotation, X
-/// the transform of the stretch, and is then the slope of the revolutions' angles, which gives its deviation, residuals
-/// taken as independent. The offset maximises the correlation with the prediction.
+/// The strongest is the variation that five revolutions in succession reach. The stretch in the cut is the longest run
+/// of revolutions whose force varies by more than half of it and less than twice, 200 revolutions at most and 4e6 steps
+/// together, those in its middle. Five revolutions or more before or after it that vary by less than a tenth of it are
+/// air, whose mean is taken off: of air on both sides the straight line between, at the stretch's middle. The speed
+/// maximises Σ_k |X(kΩ)|² over the harmonics of rotation, X the transform of the stretch, and is then the slope of the
+/// revolutions' angles, which gives its deviation, residuals taken as independent. The offset maximises the correlation
+/// with the prediction.
 /// @throws InvalidInput naming the member, or "record": fewer than five revolutions, fewer than four samples a tooth,
 ///     values that are not finite, nothing that repeats with the rotation (air), a force below 2 % of the predicted
 ///     one, a prediction without force

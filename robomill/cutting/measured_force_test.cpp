@@ -40,9 +40,10 @@ PredictedRevolution predicted(const CuttingForce& force, bool alike = true) {
 /// What a dynamometer records of a force.
 struct Recording {
   double speed_rad_per_s = 600.0, rate_hz = 10000.0, seconds = 0.5;
-  double offset_rad = 0.0;  ///< of tooth 0 at the first sample
-  double noise_n = 0.0;     ///< standard deviation of each sample
-  double air_s = 0.0;       ///< before and after the cut
+  double offset_rad = 0.0;    ///< of tooth 0 at the first sample
+  double noise_n = 0.0;       ///< standard deviation of each sample
+  double air_s = 0.0;         ///< before and after the cut
+  double air_after_s = -1.0;  ///< after it; below 0: as before
   Eigen::Vector3d zero_n = Eigen::Vector3d::Zero(), drift_n_per_s = Eigen::Vector3d::Zero();
 };
 
@@ -58,7 +59,7 @@ ForceRecord record_of(const CuttingForce& force, const Recording& how, std::uint
     const auto at = static_cast<Eigen::Index>(place);
     const double share = place - static_cast<double>(at);
     Eigen::Vector3d f = (1.0 - share) * force.force_n.col(at % steps) + share * force.force_n.col((at + 1) % steps);
-    if (t < how.air_s || t > how.seconds - how.air_s) f.setZero();
+    if (t < how.air_s || t > how.seconds - (how.air_after_s < 0.0 ? how.air_s : how.air_after_s)) f.setZero();
     for (double& component : f) component += how.noise_n * random.normal();
     out.force_n.col(i) = f + how.zero_n + how.drift_n_per_s * t;
   }
@@ -67,6 +68,13 @@ ForceRecord record_of(const CuttingForce& force, const Recording& how, std::uint
 
 MeasuredForce compared(const CuttingForce& force, const Recording& how, std::uint64_t seed = 1) {
   return compare_forces(record_of(force, how, seed), predicted(force), {.spindle_speed_rad_per_s = 600.0});
+}
+
+/// The first note with a text in it; empty: none.
+std::string said(const MeasuredForce& m, const std::string& part) {
+  const auto at =
+      std::ranges::find_if(m.notes, [&](const std::string& note) { return note.find(part) != std::string::npos; });
+  return at == m.notes.end() ? "" : *at;
 }
 
 // A record made of the prediction itself: nothing is left but what a cubic through 105 samples a revolution and the
@@ -127,6 +135,134 @@ TEST(MeasuredForce, FindsTheCutAndTakesTheAirOff) {
   EXPECT_LT(m.error_ratio.maxCoeff(), 0.02);
 }
 
+// The level is that of the strongest revolutions, however little of the record they fill.
+TEST(MeasuredForce, FindsACutThatFillsLittleOfTheRecord) {
+  const CuttingForce force = cut();
+  for (const double cutting_s : {0.1, 0.2, 0.4}) {
+    const double air_s = 0.5 * (4.0 - cutting_s);
+    const MeasuredForce m = compared(force, {.seconds = 4.0, .noise_n = 1.0, .air_s = air_s});
+    EXPECT_GE(m.from_s, air_s);
+    EXPECT_LE(m.to_s, 4.0 - air_s);
+    EXPECT_GT(m.air_revolutions, 300);
+    EXPECT_LT(m.error_ratio.maxCoeff(), 0.02);
+    EXPECT_EQ(said(m, "vary"), "");
+  }
+}
+
+// A jolt is neither the level nor part of the stretch.
+TEST(MeasuredForce, LeavesAJoltOut) {
+  const CuttingForce force = cut();
+  ForceRecord record = record_of(force, {.seconds = 1.0, .noise_n = 1.0, .air_s = 0.1});
+  record.force_n.middleCols(7000, 150) *= 20.0;
+  const MeasuredForce m = compare_forces(record, predicted(force), {.spindle_speed_rad_per_s = 600.0});
+  EXPECT_GE(m.revolutions, 50);
+  EXPECT_LE(m.to_s, 0.7);
+  EXPECT_LT(m.error_ratio.maxCoeff(), 0.02);
+  EXPECT_NE(said(m, "more than twice"), "");
+}
+
+// Two cuts of different depth: the strong one counts, and the notes name the weak one.
+TEST(MeasuredForce, SaysThatThereIsAWeakerCut) {
+  const CuttingForce force = cut();
+  ForceRecord record = record_of(force, {.seconds = 2.0, .noise_n = 1.0, .air_s = 0.2});
+  record.force_n.leftCols(14000) *= 0.3;
+  const MeasuredForce m = compare_forces(record, predicted(force), {.spindle_speed_rad_per_s = 600.0});
+  EXPECT_GE(m.from_s, 1.4);
+  EXPECT_NE(said(m, "neither the cut nor air"), "");
+}
+
+// A stretch that is given and holds air is averaged with it, which is a warning.
+TEST(MeasuredForce, WarnsOfAirInTheGivenStretch) {
+  const CuttingForce force = cut();
+  const ForceRecord record = record_of(force, {.seconds = 1.0, .noise_n = 1.0, .air_s = 0.3});
+  const auto of = [&](double from_s, double to_s) {
+    return compare_forces(record, predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = from_s, .to_s = to_s});
+  };
+  EXPECT_TRUE(said(of(0.1, 0.6), "averaged with the cut").starts_with("Warning: "));
+  EXPECT_EQ(said(of(0.35, 0.65), "averaged with the cut"), "");
+}
+
+// 4, 8 and 20 samples a revolution have fewer harmonics than are sought.
+TEST(MeasuredForce, OfFewSamplesARevolution) {
+  CuttingForce force = cut();
+  force.rotation_rad = Eigen::VectorXd::LinSpaced(360, 0.0, 2.0 * pi * 359.0 / 360.0);
+  for (Eigen::Index i = 0; i < 360; ++i) {
+    force.force_n.col(i) =
+        100.0 * Eigen::Vector3d(1.0 + std::cos(force.rotation_rad(i)), std::sin(force.rotation_rad(i)), 0.5);
+  }
+  for (const double samples : {4.1, 8.0, 20.0}) {
+    PredictedRevolution one = predicted(force);
+    one.teeth = 1;
+    const Recording how = {.speed_rad_per_s = 601.0, .rate_hz = samples * 600.0 / (2.0 * pi), .noise_n = 1.0};
+    const MeasuredForce m = compare_forces(record_of(force, how), one, {.spindle_speed_rad_per_s = 600.0});
+    EXPECT_NEAR(m.spindle_speed_rad_per_s, 601.0, 0.1) << samples;
+  }
+}
+
+// The tooth passing of 20 teeth 4 % faster is that of 21 teeth 1 % slower, near enough: no such range is searched.
+TEST(MeasuredForce, FindsTheSpeedOfManyTeeth) {
+  const int teeth = 20;
+  CuttingForce force = cut();
+  force.rotation_rad = Eigen::VectorXd::LinSpaced(1440, 0.0, 2.0 * pi * 1439.0 / 1440.0);
+  force.force_n.resize(3, 1440);
+  for (Eigen::Index i = 0; i < 1440; ++i) {
+    const double phi = teeth * force.rotation_rad(i);
+    force.force_n.col(i) = 100.0 * Eigen::Vector3d(1.0 + std::cos(phi), std::sin(phi), 1.0 + 0.5 * std::cos(phi));
+  }
+  PredictedRevolution many = predicted(force);
+  many.teeth = teeth;
+  for (const double change : {-0.019, -0.004, 0.0, 0.012, 0.019}) {
+    const double speed = 600.0 * (1.0 + change);
+    const Recording how = {.speed_rad_per_s = speed, .rate_hz = 40000.0, .noise_n = 20.0};
+    const MeasuredForce m =
+        compare_forces(record_of(force, how), many, {.spindle_speed_rad_per_s = 600.0, .speed_tolerance = 0.02});
+    EXPECT_NEAR(m.spindle_speed_rad_per_s, speed, 0.1);
+  }
+  const auto wide = [&] {
+    (void)compare_forces(record_of(force, {.rate_hz = 40000.0}), many,
+                         {.spindle_speed_rad_per_s = 600.0, .speed_tolerance = 0.021});
+  };
+  EXPECT_EQ(field_of(wide), "speed_tolerance");
+  EXPECT_NE(rejection(wide).find("must be at most 0.02 with 20 teeth"), std::string::npos);
+}
+
+// The prediction's first step need not be at rotation 0; its steps must be even.
+TEST(MeasuredForce, OfAPredictionThatBeginsElsewhere) {
+  const CuttingForce force = cut();
+  PredictedRevolution later = predicted(force);
+  later.rotation_rad.array() += 0.5;
+  const Recording how = {.offset_rad = 1.234, .noise_n = 1.0};
+  const ForceRecord record = record_of(force, how);
+  const MeasuredForce m = compare_forces(record, later, {.spindle_speed_rad_per_s = 600.0});
+  EXPECT_LT(m.error_ratio_of_all, 0.01);
+  const double turns = (600.0 * m.from_s + 1.234) / pi;
+  EXPECT_NEAR(turns, std::round(turns), 1e-3);
+  later.rotation_rad(7) += 1e-3;
+  EXPECT_NE(rejection([&] { (void)compare_forces(record, later, {.spindle_speed_rad_per_s = 600.0}); }).find("even"),
+            std::string::npos);
+  later.rotation_rad = 2.0 * force.rotation_rad;
+  EXPECT_NE(rejection([&] { (void)compare_forces(record, later, {.spindle_speed_rad_per_s = 600.0}); }).find("even"),
+            std::string::npos);
+}
+
+// Between air before and after the cut the zero drifts on a straight line; of air on one side it does not.
+TEST(MeasuredForce, ZeroOfADriftingAmplifier) {
+  const CuttingForce force = cut();
+  const Eigen::Vector3d drift(40.0, -20.0, 10.0);
+  const MeasuredForce both =
+      compared(force, {.seconds = 2.0, .noise_n = 1.0, .air_s = 0.1, .air_after_s = 0.9, .drift_n_per_s = drift});
+  EXPECT_LT((both.zero_n - drift * 0.5 * (both.from_s + both.to_s)).norm(), 1.0);
+  EXPECT_LT((both.mean_n - force.mean_n).norm(), 1.0);
+  EXPECT_EQ(said(both, "drift"), "");
+  const MeasuredForce before =
+      compared(force, {.seconds = 2.0, .noise_n = 1.0, .air_s = 0.5, .air_after_s = 0.0, .drift_n_per_s = drift});
+  EXPECT_LT((before.zero_n - drift * 0.25).norm(), 1.0);
+  EXPECT_NE(said(before, "before the cut alone"), "");
+  const MeasuredForce after =
+      compared(force, {.seconds = 2.0, .noise_n = 1.0, .air_s = 0.0, .air_after_s = 0.5, .drift_n_per_s = drift});
+  EXPECT_NE(said(after, "after the cut alone"), "");
+}
+
 // A stretch that is given counts, and a drift is taken out about its middle.
 TEST(MeasuredForce, OfAStretchThatDrifts) {
   const CuttingForce force = cut();
@@ -157,6 +293,36 @@ TEST(MeasuredForce, TellsTeethApart) {
   EXPECT_LT(with.error_ratio_of_all, 3e-3);
   const double turns = (600.0 * with.from_s + 4.0) / (2.0 * pi);
   EXPECT_NEAR(turns, std::round(turns), 1e-3);
+}
+
+// Steps that no whole number of teeth divides: what all teeth have alike is not between them, to rounding.
+TEST(MeasuredForce, TellsTeethApartAtAnyNumberOfSteps) {
+  CuttingForce force = cut();
+  for (Eigen::Index i = 0; i < 360; ++i) {
+    const double phi = force.rotation_rad(i);
+    force.force_n.col(i) = 100.0 * Eigen::Vector3d(std::cos(7.0 * phi), std::sin(14.0 * phi), std::cos(21.0 * phi)) +
+                           Eigen::Vector3d(10.0 * std::cos(phi), 0.0, 0.0);
+  }
+  PredictedRevolution seven = predicted(force, false);
+  seven.teeth = 7;
+  const MeasuredForce m =
+      compare_forces(record_of(force, {.rate_hz = 40000.0}), seven, {.spindle_speed_rad_per_s = 600.0});
+  EXPECT_NEAR(m.between_teeth_n.x(), 10.0 / std::numbers::sqrt2, 0.02);
+  EXPECT_LT(m.between_teeth_n.tail<2>().maxCoeff(), 0.05);
+}
+
+// Five revolutions count, no fewer, however the alignment cuts them.
+TEST(MeasuredForce, NeedsFiveRevolutionsAfterAll) {
+  const CuttingForce force = cut();
+  for (int k = 0; k < 40; ++k) {
+    const Recording how = {.seconds = 0.052 + 0.001 * k, .offset_rad = 0.3 * k, .noise_n = 1.0};
+    try {
+      EXPECT_GE(compared(force, how).revolutions, 5);
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find("at least 5 are needed"), std::string::npos) << error.what();
+      EXPECT_LT(how.seconds, 0.080);
+    }
+  }
 }
 
 TEST(MeasuredForce, FindsTheAxes) {
@@ -213,6 +379,17 @@ TEST(MeasuredForce, RejectsWhatIsNoCut) {
   EXPECT_EQ(field(predicted(force), {.spindle_speed_rad_per_s = 600.0, .speed_tolerance = 0.2}), "speed_tolerance");
   EXPECT_EQ(field(predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.2, .to_s = 0.1}), "to_s");
   EXPECT_EQ(field(predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.2, .to_s = 0.22}), "record");
+  EXPECT_EQ(field(predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 1e300, .to_s = 1e301}), "record");
+  EXPECT_EQ(field(predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.48}), "record");
+}
+
+// The beginning may be given alone.
+TEST(MeasuredForce, FromATimeOn) {
+  const CuttingForce force = cut();
+  const MeasuredForce m =
+      compare_forces(record_of(force, {}), predicted(force), {.spindle_speed_rad_per_s = 600.0, .from_s = 0.3});
+  EXPECT_GE(m.from_s, 0.3);
+  EXPECT_LE(m.revolutions, 19);
 }
 
 // A speed at the border of what was searched is noted, one beyond it too.

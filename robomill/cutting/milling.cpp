@@ -140,6 +140,10 @@ bool FlatEndMill::has_equal_helix() const {
   return std::ranges::all_of(tooth_helix_rad, [&](double helix) { return helix == tooth_helix_rad.front(); });
 }
 
+bool FlatEndMill::has_equal_teeth() const {
+  return has_equal_pitch() && has_equal_helix() && runout_m == 0.0;
+}
+
 double FlatEndMill::lag_rad_per_m(int tooth) const {
   const double helix = tooth_helix_rad.empty() ? helix_rad : tooth_helix_rad[static_cast<std::size_t>(tooth)];
   return 2.0 * std::tan(helix) / diameter_m;

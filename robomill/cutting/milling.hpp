@@ -29,6 +29,8 @@ struct ROBOMILL_API FlatEndMill {
   [[nodiscard]] bool has_equal_pitch() const;
   /// Whether all teeth have one helix angle.
   [[nodiscard]] bool has_equal_helix() const;
+  /// Whether what it does repeats with every tooth: equal pitch and helix, no runout.
+  [[nodiscard]] bool has_equal_teeth() const;
   /// Lag of tooth j's angle per axial height, 2 tan(β_j) / D [rad/m].
   [[nodiscard]] double lag_rad_per_m(int tooth) const;
   /// By how much tooth j's radius exceeds D / 2 at a height: e cos(σ_j - lag_j z - ρ), with the runout's offset e and

@@ -51,7 +51,7 @@ Period period_of(const cutting::Milling& milling) {
 
 Period period_of(const cutting::FlatEndMill& teeth) {
   Period period;
-  if (teeth.has_equal_pitch() && teeth.has_equal_helix() && teeth.runout_m == 0.0) period.parts = teeth.teeth;
+  if (teeth.has_equal_teeth()) period.parts = teeth.teeth;
   return period;
 }
 

@@ -131,7 +131,7 @@ ForcedResponse::ForcedResponse(const LobesProblem& problem) : milling_(problem.m
   }
   require_positive("feed_per_tooth_m", milling_.feed_per_tooth_m, "m");
   response_ = response_of(problem);
-  equal_teeth_ = milling_.tool.has_equal_pitch() && milling_.tool.has_equal_helix() && milling_.tool.runout_m == 0.0;
+  equal_teeth_ = milling_.tool.has_equal_teeth();
 }
 
 ForcedVibration ForcedResponse::at(const OperatingPoint& point) const {

@@ -293,7 +293,7 @@ SignalFit identify_from_signal(const Cutter& cutter, const Engagement& engagemen
   check(engagement, rotation_rad, force_n, terms.size());
   const Model model(cutter, engagement, motion, terms, options.steps);
   const Signal signal{rotation_rad, Eigen::VectorXd(force_n.reshaped())};
-  const bool alike = cutter.mill.has_equal_pitch() && cutter.mill.has_equal_helix() && cutter.mill.runout_m == 0.0;
+  const bool alike = cutter.mill.has_equal_teeth();
   const double period_rad = alike ? 2.0 * pi / cutter.mill.teeth : 2.0 * pi;
 
   SignalFit fit;

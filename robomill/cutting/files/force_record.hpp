@@ -17,7 +17,7 @@ struct ForceRecordOptions {
   /// Columns of x, y and z by name or number from 1, "-" before one whose sign is turned, "none" for one that was not
   /// measured; empty: found by their names.
   std::vector<std::string> channels = {};
-  double full_scale_n = 0.0;    ///< of a WAV [N]; 0: not given
+  double full_scale_n = 0.0;    ///< of a WAV [N], and of nothing else; 0: not given
   double sample_rate_hz = 0.0;  ///< 0: that of the record
 };
 
@@ -32,8 +32,9 @@ struct ForceRecordFile {
 
 /// Any file that io::read_record reads. Columns are x, y and z where their names say so ("Fx", "force_y", "Z [N]"), and
 /// units are those that the file states, N where it states none, which is listed as assumed.
-/// @throws InvalidInput with the file: no such column, one in another unit than of force, no columns that are known as
-///     forces, no sample rate; naming "channels", "full_scale_n" or "sample_rate_hz" where that is what is to be given
+/// @throws InvalidInput with the file: no such column, one named twice, one in another unit than of force, no columns
+///     that are known as forces, no sample rate, a file too large for the cost limit; naming "channels", "full_scale_n"
+///     or "sample_rate_hz" where that is what is to be given
 [[nodiscard]] ROBOMILL_API ForceRecordFile read_force_record(const std::filesystem::path& path,
                                                              const ForceRecordOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/cost.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "testing/support.hpp"
 
@@ -77,6 +78,21 @@ TEST(ForceRecord, RejectsWhatIsNoForce) {
             std::string::npos);
   EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"none", "none", "none"}}).find("no component is left"),
             std::string::npos);
+  const std::string twice = says("time_s,Fx,Fy,Fz\n" + rows, {.channels = {"Fx", "-2", "Fz"}});
+  EXPECT_NE(twice.find("2 of a.csv is two components"), std::string::npos) << twice;
+  EXPECT_NE(says("time_s,Fx,Fy,Fz\n" + rows, {.full_scale_n = 100.0}).find("a.csv has forces in a unit"),
+            std::string::npos);
+}
+
+// What a file would take is known from its size, before it is read.
+TEST(ForceRecord, IsBoundedInSize) {
+  const Folder folder;
+  const auto path = folder.file("large.csv", "time_s,Fx,Fy,Fz\n" + rows);
+  const CostLimit before = cost_limit();
+  set_cost_limit({.bytes = 100.0});
+  const std::string text = rejection([&] { (void)read_force_record(path); });
+  set_cost_limit(before);
+  EXPECT_NE(text.find("size of large.csv"), std::string::npos) << text;
 }
 
 }  // namespace force_record_test

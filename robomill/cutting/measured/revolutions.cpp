@@ -63,22 +63,33 @@ std::vector<double> variation_by_revolution(const Eigen::Matrix3Xd& force_n, dou
   return out;
 }
 
-CutAndAir find_cut(const std::vector<double>& variation) {
+double strongest(const std::vector<double>& variation, Run within) {
+  double out = 0.0;
+  for (int b = within.begin; b + least_revolutions <= within.end; ++b) {
+    out = std::max(out, *std::min_element(variation.begin() + b, variation.begin() + b + least_revolutions));
+  }
+  return out;
+}
+
+CutAndAir find_cut(const std::vector<double>& variation, Run within) {
   CutAndAir out;
-  if (variation.empty()) return out;
-  std::vector<double> sorted = variation;
-  const std::size_t rank = (sorted.size() - 1) * 9 / 10;
-  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(rank));
-  const double strong = sorted[rank];
+  out.strong = strongest(variation, within);
   const int count = static_cast<int>(variation.size());
-  const auto of = [&](int b) { return variation[static_cast<std::size_t>(b)]; };
-  for (int b = 0; b < count; ++b) {
-    if (of(b) < 0.1 * strong) out.air.push_back(b);
-    if (!(of(b) > 0.5 * strong)) continue;
-    Run run{b, b + 1};
-    while (run.end < count && of(run.end) > 0.5 * strong) ++run.end;
-    if (run.length() > out.cut.length()) out.cut = run;
-    b = run.end - 1;
+  enum class Level { air, weak, cut, jolt };
+  const auto level_of = [&](int b) {
+    const double share = variation[static_cast<std::size_t>(b)] / out.strong;
+    return share < 0.1 ? Level::air : share <= 0.5 ? Level::weak : share < 2.0 ? Level::cut : Level::jolt;
+  };
+  if (!(out.strong > 0.0)) return out;
+  for (int b = 0; b < count;) {
+    const Level level = level_of(b);
+    Run run{b, b};
+    while (run.end < count && level_of(run.end) == level) ++run.end;
+    b = run.end;
+    if (level == Level::jolt) out.jolts += run.length();
+    if (level == Level::weak) out.weak = std::max(out.weak, run.length());
+    if (level == Level::cut && run.length() > out.cut.length()) out.cut = run;
+    for (int i = run.begin; level == Level::air && i < run.end; ++i) out.air.push_back(i);
   }
   // Where the cut begins and ends within the record, so does the engagement of these revolutions.
   if (out.cut.begin > 0 && out.cut.length() > 1) ++out.cut.begin;

@@ -16,15 +16,30 @@ struct Run {
   [[nodiscard]] int length() const { return end - begin; }
 };
 
-/// What is cut and what is air: by the share of the 90 % quantile of the variations.
+/// The one threshold of all that counts revolutions: of a cut, of air, of a level.
+inline constexpr int least_revolutions = 5;
+
+/// The variation that `least_revolutions` in succession reach: a shorter jolt is not it, nor is what fills little of
+/// the record lost. 0: there are fewer.
+[[nodiscard]] double strongest(const std::vector<double>& variation, Run within);
+
+/// What is cut and what is air, by the share of the strongest.
 struct CutAndAir {
-  Run cut;  ///< the longest run above half of it, without its first and last revolution where the record goes on
+  double strong = 0.0;
+  Run cut;  ///< the longest run above half of it and below twice, without its first and last revolution where the
+            ///< record goes on
   std::vector<int> air;  ///< revolutions below a tenth of it
+  int weak = 0;          ///< in the longest run that is neither: from a tenth to half of it
+  int jolts = 0;         ///< above twice of it
 };
-[[nodiscard]] CutAndAir find_cut(const std::vector<double>& variation);
+/// @param within  where the strongest is sought
+[[nodiscard]] CutAndAir find_cut(const std::vector<double>& variation, Run within);
 
 /// The speed in turns a sample that maximises the energy of the first harmonics over a stretch.
-/// @param turns      as given; @param tolerance  relative
+/// @param turns      as given
+/// @param tolerance  relative, below 0.5 / N of N teeth: 1 / N beside a speed the tooth passing turns by a whole period
+/// a
+///                   revolution, and looks like that of N - 1 or N + 1 teeth
 /// @param harmonics  >= 1, below samples / 2
 [[nodiscard]] double find_speed(const Eigen::Matrix3Xd& force_n, double turns, double tolerance, int harmonics);
 

@@ -84,7 +84,7 @@ CostlyTurn costly_turn(const LobesProblem& problem, const LobesOptions& options)
     return turn;
   }
   const cutting::FlatEndMill& tool = problem.spatial ? problem.spatial->cutter.mill : problem.milling.tool;
-  const bool alike = tool.has_equal_pitch() && tool.has_equal_helix() && tool.runout_m == 0.0;
+  const bool alike = tool.has_equal_teeth();
   turn.period_rad = alike ? units::revolution / tool.teeth : units::revolution;
   if (problem.spatial) {
     turn.base = 30.0;

@@ -106,7 +106,7 @@ SpatialModel::SpatialModel(Parts parts)
       tip_(tip_dynamics<3>(parts_.structure)),
       fastest_rad_per_s_(tip_.pole.cwiseAbs().maxCoeff()) {
   const cutting::FlatEndMill& mill = parts_.cutter.mill;
-  equal_teeth_ = mill.has_equal_pitch() && mill.has_equal_helix() && mill.runout_m == 0.0;
+  equal_teeth_ = mill.has_equal_teeth();
   period_rad_ = equal_teeth_ ? units::revolution / mill.teeth : units::revolution;
 }
 

@@ -77,7 +77,7 @@ SteadyForce steady_force(const cutting::Cutter& cutter, const cutting::Engagemen
                          const Eigen::Matrix3d& axes_from_tool) {
   const cutting::FlatEndMill& mill = cutter.mill;
   SteadyForce out;
-  out.equal_teeth = mill.has_equal_pitch() && mill.has_equal_helix() && mill.runout_m == 0.0;
+  out.equal_teeth = mill.has_equal_teeth();
   out.period_rad = out.equal_teeth ? units::revolution / mill.teeth : units::revolution;
   const bool per_edge = cutting::counts_edge_length(coefficients.edge_measure, cutter.kind);
   const Eigen::RowVector3d feed = engagement.feed_from_tool.row(0);

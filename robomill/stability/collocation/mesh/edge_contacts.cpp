@@ -29,7 +29,7 @@ EdgeContacts edge_contacts(const cutting::Cutter& cutter, const cutting::Engagem
                            const cutting::MillingCoefficients& coefficients, double feed_per_tooth_m) {
   const cutting::FlatEndMill& mill = cutter.mill;
   EdgeContacts out;
-  out.equal_teeth = mill.has_equal_pitch() && mill.has_equal_helix() && mill.runout_m == 0.0;
+  out.equal_teeth = mill.has_equal_teeth();
   out.period_rad = out.equal_teeth ? units::revolution / mill.teeth : units::revolution;
   out.teeth = out.equal_teeth ? 1 : mill.teeth;
   if (!engagement.slices.empty()) {
