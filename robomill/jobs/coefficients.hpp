@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
@@ -40,8 +41,10 @@ struct SignalCoefficientsJob {
 struct SignalCoefficientsResult {
   cutting::SignalFit fit;
   std::filesystem::path record;
-  /// The cut with the coefficients found, and the record beside it. Without a revolution where they push the tool the
-  /// wrong way, which its notes say.
+  /// Why they are not to be used: they explain less than half of the force's variance, or no cut has them (a negative
+  /// tangential one). Empty: they may be.
+  std::string rejected = {};
+  /// The cut with the coefficients found, and the record beside it. Without a revolution where they are rejected.
   process::ForcesResult forces;
   std::vector<Assumption> assumed = {};
 };

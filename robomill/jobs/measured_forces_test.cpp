@@ -91,6 +91,17 @@ TEST(MeasuredForces, WarnOfOtherAxes) {
   EXPECT_NE(result.warnings.back().find("--channels=Fy,-Fx,Fz"), std::string::npos) << result.warnings.back();
 }
 
+// Axes that come out left-handed are those of the force on the other body.
+TEST(MeasuredForces, WarnOfTheOtherBody) {
+  const Files files;
+  const auto tool = files.folder.file("tool.toml", "force_on = \"tool\"\n" + cut + coefficients);
+  const std::string turned = run_measured_forces(tool, files.job).warnings.back();
+  EXPECT_NE(turned.find("force_on = \"workpiece\" in the cut's file. Which"), std::string::npos) << turned;
+  const std::string both = run_measured_forces(tool, {.record = files.record}).warnings.back();
+  EXPECT_NE(both.find("force_on = \"workpiece\" in the cut's file and --channels=Fy,-Fx,Fz. Which"), std::string::npos)
+      << both;
+}
+
 TEST(MeasuredForces, SayWhatTheyActOn) {
   const Files files;
   const auto tool = files.folder.file("tool.toml", cut + coefficients);
@@ -141,6 +152,47 @@ TEST(SignalCoefficients, OfARecord) {
   const auto again =
       files.folder.file("again.toml", "force_on = \"workpiece\"\ncoefficients = { file = \"c.toml\" }\n" + cut);
   EXPECT_LT(run_measured_forces(again, files.job).measured->force.error_ratio_of_all, 0.02);
+}
+
+// Forces of the wrong sign, or of other axes, are no answer: exit 3, and nobody takes the file for one.
+TEST(SignalCoefficients, RejectWhatNoCutHas) {
+  const Files files;
+  const auto tool = files.folder.file("tool.toml", "force_on = \"tool\"\n" + cut);
+  const SignalCoefficientsResult turned =
+      run_signal_coefficients({.record = files.record, .cut = tool, .reading = files.job.reading});
+  EXPECT_NE(shortfall(turned), "");
+  EXPECT_FALSE(turned.forces.revolution);
+  EXPECT_TRUE(document(turned, io::Format::toml).starts_with("# Not to be used: "));
+  const auto bare = files.folder.file("cut.toml", "force_on = \"workpiece\"\n" + cut);
+  const SignalCoefficientsResult other =
+      run_signal_coefficients({.record = files.record, .cut = bare, .reading = {.channels = {"Fz", "Fy", "-Fx"}}});
+  EXPECT_NE(shortfall(other), "");
+  for (const SignalCoefficientsResult* result : {&turned, &other}) {
+    const std::string text = summary(*result);
+    for (const std::string& warning : result->forces.warnings) EXPECT_NE(text.find(warning), std::string::npos);
+    EXPECT_NE(nlohmann::json::parse(document(*result, io::Format::json))["notes"].dump().find("Not to be used"),
+              std::string::npos);
+  }
+}
+
+TEST(SignalCoefficients, SayWhatOfTheDocumentTheyLeaveOut) {
+  const Files files;
+  const auto full = files.folder.file(
+      "full.toml", "force_on = \"workpiece\"\n" + cut + coefficients +
+                       "[workpiece_dynamics]\nx = [{ frequency_hz = 900, damping_ratio = 0.03, modal_mass_kg = 3 }]\n");
+  const SignalCoefficientsResult result =
+      run_signal_coefficients({.record = files.record, .cut = full, .reading = files.job.reading});
+  EXPECT_EQ(shortfall(result), "");
+  const std::string text = summary(result);
+  for (const char* part :
+       {"[workpiece_dynamics] of full.toml is left out", "[coefficients] of full.toml have no part"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  // What is assumed is said once.
+  const std::size_t runout = text.find("Runout");
+  ASSERT_NE(runout, std::string::npos) << text;
+  EXPECT_EQ(text.find("Runout", runout + 1), std::string::npos) << text;
+  EXPECT_EQ(text.find("Edge forces"), std::string::npos) << text;
 }
 
 TEST(SignalCoefficients, NeedAllComponents) {

@@ -20,7 +20,7 @@ cutting::PredictedRevolution prediction_of(const ForcesResult& result) {
   return {.rotation_rad = revolution.deflected.force.rotation_rad,
           .force_n = (result.cut.on_workpiece ? -1.0 : 1.0) * force_n,
           .teeth = mill.teeth,
-          .teeth_alike = !vibrating && mill.has_equal_pitch() && mill.has_equal_helix() && mill.runout_m == 0.0};
+          .teeth_alike = !vibrating && mill.has_equal_teeth()};
 }
 
 /// The error where it belongs: the record's file, or the file of the cut.
@@ -38,17 +38,44 @@ std::string signed_channel(const std::string& channel, bool turned) {
   return channel.starts_with('-') ? channel.substr(1) : "-" + channel;
 }
 
-std::string better_axes_text(const cutting::SignedAxes& axes, const cutting::ForceRecordFile& record,
-                             const cutting::MeasuredForce& found) {
-  std::string channels;
+std::string channels_text(const cutting::SignedAxes& axes, const cutting::ForceRecordFile& record, bool opposite) {
+  std::string out;
   for (const int axis : axes) {
     const std::string& channel = record.channels[static_cast<std::size_t>(std::abs(axis)) - 1];
-    channels += (channels.empty() ? "" : ",") + signed_channel(channel, axis < 0);
+    out += (out.empty() ? "" : ",") + signed_channel(channel, (axis < 0) != opposite);
+  }
+  return out;
+}
+
+/// A dynamometer's axes are right-handed. Those that come out left-handed are right-handed with every sign turned,
+/// which is what the force on the other body has.
+bool left_handed(const cutting::SignedAxes& axes) {
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const int axis = axes[static_cast<std::size_t>(i)];
+    turned(i, std::abs(axis) - 1) = axis < 0 ? -1.0 : 1.0;
+  }
+  return turned.col(0).cross(turned.col(1)).dot(turned.col(2)) < 0.0;
+}
+
+std::string better_axes_text(const cutting::ForceRecordFile& record, const cutting::MeasuredForce& found,
+                             bool on_workpiece) {
+  const cutting::SignedAxes& axes = *found.better_axes;
+  const std::string errors = fmt::format("an error of {:.3g} % of all components in place of {:.3g} %",
+                                         100.0 * found.better_axes_error_ratio, 100.0 * found.error_ratio_of_all);
+  if (left_handed(axes)) {
+    const std::string channels = channels_text(axes, record, true);
+    const bool as_given = axes == cutting::SignedAxes{-1, -2, -3};
+    return fmt::format(
+        "{}the record fits the prediction better with every sign turned: {} with force_on = \"{}\" in the cut's "
+        "file{}. "
+        "Which body does the measured force act on?",
+        io::warning_label, errors, on_workpiece ? "tool" : "workpiece", as_given ? "" : " and --channels=" + channels);
   }
   return fmt::format(
-      "{}the record fits the prediction better with other axes: an error of {:.3g} % of all components with "
-      "--channels={} and of {:.3g} % with those given. Do the axes of the dynamometer run as assumed?",
-      io::warning_label, 100.0 * found.better_axes_error_ratio, channels, 100.0 * found.error_ratio_of_all);
+      "{}the record fits the prediction better with other axes: {} with --channels={}. Do the axes of the dynamometer "
+      "run as assumed?",
+      io::warning_label, errors, channels_text(axes, record, false));
 }
 
 }  // namespace
@@ -75,11 +102,13 @@ void compare_with_record(ForcesResult& result, const cutting::ForceRecordFile& r
   } else {
     notes.emplace_back(
         "Measured forces are as recorded: the record has no five revolutions in air, so that an offset of the "
-        "amplifier "
-        "would be in the means.");
+        "amplifier would be in the means.");
   }
-  notes.emplace_back("What the dynamometer itself adds near its resonances is in the measured force.");
-  if (out.force.better_axes) notes.push_back(better_axes_text(*out.force.better_axes, record, out.force));
+  notes.emplace_back(
+      "The angle between record and prediction is the one that fits best: errors are lower for it, and a phase that "
+      "the "
+      "prediction has wrong is not in them.");
+  if (out.force.better_axes) notes.push_back(better_axes_text(record, out.force, result.cut.on_workpiece));
   const std::vector<std::string> warnings = io::take_warnings(notes);
   result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
   result.notes.insert(result.notes.end(), notes.begin(), notes.end());

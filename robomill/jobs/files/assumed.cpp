@@ -67,11 +67,12 @@ std::vector<Assumption> assumed_of(const process::ForcesFile& file, bool with_ce
   Defaults defaults(file.document, file.path);
   defaults.add_helix();
   defaults.add_without("tool.runout_um", "Runout", "0 µm");
-  add_coefficients(defaults, true, true);
+  const bool sought = file.job == process::ForcesJob::identification;
+  if (!sought) add_coefficients(defaults, true, true);
   if (!with_cell) defaults.add("Machine", "rigid, its deflection is left out", "robot.cell");
   const bool posed = with_cell && !file.joints_rad.empty() && file.job == process::ForcesJob::revolution;
   if (posed) defaults.add_without("robot.feed_direction", "Feed direction", "along x of the work frame");
-  if (!file.dynamics.modes.empty()) {
+  if (!sought && !file.dynamics.modes.empty()) {
     defaults.add_without("cut.feed_direction_deg", "Feed direction in the axes of the structure", "0°, along x");
     defaults.add_without("workpiece_dynamics", "Workpiece and its fixture", "rigid");
   }

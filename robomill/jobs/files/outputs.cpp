@@ -209,6 +209,7 @@ std::string shortfall(const CoefficientsResult& result) {
 }
 
 std::string shortfall(const SignalCoefficientsResult& result) {
+  if (!result.rejected.empty()) return result.rejected;
   return result.fit.identifiable ? "" : "the record does not determine every coefficient";
 }
 

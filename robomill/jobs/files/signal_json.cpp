@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/io/schema.hpp"
@@ -75,6 +76,7 @@ const Schema<Result>& signal_table() {
            "notes",
            [](const Result& r) {
              std::vector<std::string> notes = r.fit.notes;
+             if (!r.rejected.empty()) notes.push_back("Not to be used: " + r.rejected);
              for (const std::vector<std::string>* more : {&r.forces.warnings, &r.forces.notes}) {
                notes.insert(notes.end(), more->begin(), more->end());
              }
@@ -100,7 +102,8 @@ std::string signal_coefficients_json(const SignalCoefficientsResult& result) {
 
 std::string signal_coefficients_toml(const SignalCoefficientsResult& result) {
   const cutting::SignalFit& fit = result.fit;
-  std::string out = cutting::coefficients_toml(fit.coefficients);
+  std::string out = result.rejected.empty() ? "" : "# Not to be used: " + printable(result.rejected) + "\n\n";
+  out += cutting::coefficients_toml(fit.coefficients);
   io::append(out, "\n# Standard deviations, residuals taken as independent, in the order and units above:\n");
   const auto add = [&out](const char* name, const std::vector<double>& deviations, double unit) {
     io::append(out, "# {}", name);

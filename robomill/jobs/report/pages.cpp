@@ -171,8 +171,13 @@ page::Report page_of(const CoefficientsResult& result) {
 
 page::Report page_of(const SignalCoefficientsResult& result) {
   page::Report page = titled("Cutting force coefficients of a force record", summary(result));
-  if (result.forces.revolution) page.forces = process::forces_json(result.forces);
   page.notes = result.fit.notes;
+  if (result.forces.revolution) {
+    page.forces = process::forces_json(result.forces);
+  } else {
+    add_texts(page.notes, result.forces.warnings);
+    add_texts(page.notes, result.forces.notes);
+  }
   page.assumed = result.assumed;
   return page;
 }

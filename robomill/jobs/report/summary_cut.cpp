@@ -391,6 +391,7 @@ std::string summary(const SignalCoefficientsResult& result) {
   if (result.forces.revolution) {
     out += process::summary(result.forces);
   } else {
+    io::add_notes(out, result.forces.warnings, "warning      ");
     io::add_notes(out, result.forces.notes, "note         ");
   }
   return out + assumed_text(result.assumed);

@@ -84,7 +84,8 @@ const Schema<MeasuredRevolution>& measured_table() {
             of_force("offset_std_deg", &MeasuredForce::offset_deviation_rad, "of the mean revolution's angle"),
             of_force("air_revolutions", &MeasuredForce::air_revolutions,
                      "whose mean was taken off; 0: forces are as recorded"),
-            by_axis("zero_n", &MeasuredForce::zero_n, "that mean"),
+            by_axis("zero_n", &MeasuredForce::zero_n,
+                    "that mean; of air before and after the cut on a straight line at its middle"),
             by_axis("drift_n", &MeasuredForce::drift_n, "of the means over the stretch, taken out about its middle"),
             by_axis("mean_n", &MeasuredForce::mean_n, "measured, x, y, z"),
             by_axis("mean_std_n", &MeasuredForce::mean_deviation_n, "standard deviation of single revolutions"),
@@ -96,8 +97,11 @@ const Schema<MeasuredRevolution>& measured_table() {
             by_axis("predicted_rms_n", &MeasuredForce::predicted_rms_n, "root mean square"),
             by_axis("scatter_n", &MeasuredForce::scatter_n, "root mean square of single revolutions about their mean"),
             by_axis("between_teeth_n", &MeasuredForce::between_teeth_n,
-                    "root mean square of what differs from tooth to tooth"),
-            by_axis("error_n", &MeasuredForce::error_n, "root mean square of predicted less measured"),
+                    "root mean square of what differs from tooth to tooth, noise included"),
+            by_axis(
+                "error_n", &MeasuredForce::error_n,
+                "root mean square of predicted less measured, at the angle where they fit best; the noise of the mean "
+                "revolution, scatter_n over the root of revolutions, is in it"),
             by_axis("error_ratio", &MeasuredForce::error_ratio, "over rms_n"),
             by_axis("shape_error_n", &MeasuredForce::shape_error_n, "the same without the means"),
             by_axis("shape_error_ratio", &MeasuredForce::shape_error_ratio,
