@@ -96,6 +96,25 @@ void check_prediction(const PredictedRevolution& predicted, const Eigen::Matrix3
   }
 }
 
+/// @throws InvalidInput where they are too few, or the speed would be sought too far away
+double samples_a_revolution(const ForceRecord& record, const PredictedRevolution& predicted,
+                            const MeasuredForceOptions& options) {
+  const double samples = 2.0 * pi * record.sample_rate_hz / options.spindle_speed_rad_per_s;
+  if (samples < least_samples_a_tooth * predicted.teeth) {
+    throw InvalidInput("record", fmt::format("has {:.2g} samples a tooth at {:.6g} rpm and {:.6g} Hz; at least {:.0f} "
+                                             "samples a tooth are needed",
+                                             samples / predicted.teeth, options.spindle_speed_rad_per_s / units::rpm,
+                                             record.sample_rate_hz, least_samples_a_tooth));
+  }
+  if (options.speed_tolerance * predicted.teeth > most_tolerance_of_tooth) {
+    throw InvalidInput(
+        "speed_tolerance", options.speed_tolerance, "",
+        fmt::format("must be at most {:.3g} with {} teeth", most_tolerance_of_tooth / predicted.teeth, predicted.teeth),
+        "Beyond it the tooth passing may be that of one tooth more or less at another speed");
+  }
+  return samples;
+}
+
 /// Where in the record it cuts, in revolutions at the speed as given, and where it is in air.
 struct Stretch {
   Run run;
@@ -426,19 +445,7 @@ MeasuredForce compare_forces(const ForceRecord& record, const PredictedRevolutio
   const Eigen::Matrix3Xd prediction = measured_only(predicted.force_n, measured);
   check_prediction(predicted, prediction);
   const Eigen::Matrix3Xd force = measured_only(record.force_n, measured);
-  const double samples = 2.0 * pi * record.sample_rate_hz / options.spindle_speed_rad_per_s;
-  if (samples < least_samples_a_tooth * predicted.teeth) {
-    throw InvalidInput("record", fmt::format("has {:.2g} samples a tooth at {:.6g} rpm and {:.6g} Hz; at least {:.0f} "
-                                             "samples a tooth are needed",
-                                             samples / predicted.teeth, options.spindle_speed_rad_per_s / units::rpm,
-                                             record.sample_rate_hz, least_samples_a_tooth));
-  }
-  if (options.speed_tolerance * predicted.teeth > most_tolerance_of_tooth) {
-    throw InvalidInput(
-        "speed_tolerance", options.speed_tolerance, "",
-        fmt::format("must be at most {:.3g} with {} teeth", most_tolerance_of_tooth / predicted.teeth, predicted.teeth),
-        "Beyond it the tooth passing may be that of one tooth more or less at another speed");
-  }
+  const double samples = samples_a_revolution(record, predicted, options);
   MeasuredForce out;
   out.sample_rate_hz = record.sample_rate_hz;
   out.revolutions_in_record = static_cast<int>(static_cast<double>(force.cols()) / samples);

@@ -366,6 +366,14 @@ TEST(MeasuredForce, RejectsWhatIsNoCut) {
   EXPECT_NE(says(record_of(kilo, {})).find("less than 2 % of the predicted"), std::string::npos);
   EXPECT_NE(says(record_of(force, {.seconds = 0.03})).find("has 2 whole revolutions"), std::string::npos);
   EXPECT_NE(says(record_of(force, {.seconds = 0.5, .air_s = 0.23})).find("in the cut"), std::string::npos);
+  // Three or four revolutions in the cut, in noise: the rest is not averaged with them.
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto short_cut = [&](double air_s) {
+      return says(record_of(force, {.seconds = 2.0, .noise_n = 5.0, .air_s = air_s}, seed));
+    };
+    EXPECT_NE(short_cut(0.98).find("has 3 whole revolutions in the cut"), std::string::npos) << short_cut(0.98);
+    EXPECT_NE(short_cut(0.985).find("the cut is shorter than five revolutions"), std::string::npos) << short_cut(0.985);
+  }
   EXPECT_NE(says(record_of(force, {.rate_hz = 500.0})).find("at least 4 samples a tooth"), std::string::npos);
   ForceRecord broken = record_of(force, {});
   broken.force_n(1, 7) = std::numeric_limits<double>::infinity();
