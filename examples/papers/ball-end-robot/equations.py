@@ -81,7 +81,8 @@ def geometry(cut, document):
             raise SystemExit(f"the ring at {height} mm has {len(arcs)} arcs")
         entry = max(entry, abs(arcs[0][0]))
         exit_ = max(exit_, abs(arcs[0][1] - math.degrees(borders(radius, height, stepover))))
-    return {"ring_radius_mm": ring, "swept_line_deg": entry, "neighbour_deg": exit_}
+    return {"ring_radius_mm": ring, "swept_line_deg": entry, "neighbour_deg": exit_,
+            "h_min_mm": radius - math.sqrt(radius**2 - stepover**2 / 4), "h_mid_mm": radius - math.sqrt(radius**2 - stepover**2)}  # eq. 9, 10
 
 
 def crosses_feed(document):
