@@ -11,11 +11,13 @@
 #include "robomill/cutting/chip.hpp"
 #include "robomill/cutting/cut_limits.hpp"
 #include "robomill/cutting/degrees.hpp"
+#include "robomill/cutting/larger.hpp"
 #include "robomill/cutting/polynomial.hpp"
 
 namespace robomill::cutting {
 namespace {
 
+using detail::larger;
 using detail::polynomial;
 using std::numbers::pi;
 
@@ -189,10 +191,6 @@ void check(const Engagement& engagement) {
     }
   }
   if (!engagement.feed_from_tool.allFinite()) throw InvalidInput("feed_from_tool", "must be finite");
-}
-
-double larger(double a, double b) {
-  return std::abs(b) > std::abs(a) ? b : a;
 }
 
 }  // namespace

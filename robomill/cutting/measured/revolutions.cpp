@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "robomill/cutting/larger.hpp"
+
 namespace robomill::cutting::detail {
 namespace {
 
@@ -174,11 +176,9 @@ Angles angles_of(const std::vector<Eigen::Matrix3Xd>& revolutions) {
 }
 
 Eigen::Vector3d peaks_of(const Eigen::Matrix3Xd& force_n) {
-  Eigen::Vector3d out;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    Eigen::Index at = 0;
-    force_n.row(axis).cwiseAbs().maxCoeff(&at);
-    out(axis) = force_n(axis, at);
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < force_n.cols(); ++i) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) out(axis) = larger(out(axis), force_n(axis, i));
   }
   return out;
 }
