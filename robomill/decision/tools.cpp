@@ -82,12 +82,25 @@ void try_tool(coupling::Assembly assembly, const Eigen::VectorXd& frequency_hz, 
   }
 }
 
+/// A tool that cuts is held, and carries no accelerometer.
+void require_cutting(const coupling::Assembly& assembly) {
+  if (assembly.holder.free) {
+    throw InvalidInput("holder.free", "must not be true where tools are to cut",
+                       "A tool that cuts is held by something");
+  }
+  if (assembly.accelerometer.mass_kg > 0.0) {
+    throw InvalidInput("accelerometer.mass_kg", assembly.accelerometer.mass_kg, "kg",
+                       "must be 0 where tools are to cut", "A tool that cuts carries no accelerometer");
+  }
+}
+
 }  // namespace
 
 std::vector<ToolResult> try_tools(const coupling::Assembly& assembly, const Eigen::VectorXd& frequency_hz,
                                   const std::vector<coupling::ListedTool>& tools, const std::optional<ToolCut>& cut,
                                   std::uint64_t seed, Progress& progress) {
   if (tools.empty()) throw InvalidInput("tools", "holds no tool");
+  require_cutting(assembly);
   std::vector<ToolResult> out(tools.size());
   progress.start("tools", tools.size());
   parallel_for(tools.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -56,7 +56,7 @@ struct ToolCut {
 /// stops no other.
 /// @param frequency_hz  lines of the FRFs
 /// @param cut           without dynamics: those of each tool are put in
-/// @throws InvalidInput  if the list is empty
+/// @throws InvalidInput  if the list is empty, or the assembly's tool hangs free or carries an accelerometer
 /// @throws Interrupted  when progress asks to stop
 [[nodiscard]] ROBOMILL_API std::vector<ToolResult> try_tools(const coupling::Assembly& assembly,
                                                              const Eigen::VectorXd& frequency_hz,

@@ -64,6 +64,7 @@ void warn_of_prediction(PlanResult& result) {
   result.notes.push_back(
       prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
                           : "The FRFs are predicted from the assembly, not measured.");
+  if (!prediction.file.cutting_note.empty()) result.notes.push_back(prediction.file.cutting_note);
   append_warnings(prediction.file.notes, result.warnings);
   append(result.notes, prediction.file.joint_notes);
   append(result.warnings, prediction.file.joint_warnings);
@@ -104,7 +105,8 @@ void measure(PlanResult& result, Progress& progress) {
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
   } else if (!result.job.assembly.empty()) {
-    result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress, result.job.joint);
+    result.prediction =
+        predict_tip(result.job.assembly, result.job.measured, {}, progress, result.job.joint, TipUse::cutting);
     result.frfs = result.prediction->tip.frfs;
     add_assumed(result.assumed, result.prediction->file.assumed);
     warn_of_prediction(result);

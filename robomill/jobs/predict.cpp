@@ -12,9 +12,10 @@ namespace {
 constexpr double measurement_error = 0.01;
 
 /// An error about the assembly names its file.
-coupling::TipResult couple(const coupling::AssemblyFile& file, const coupling::TipOptions& options) {
+coupling::TipResult couple(const coupling::AssemblyFile& file, const coupling::Assembly& assembly,
+                           const coupling::TipOptions& options) {
   try {
-    return coupling::tip_frfs(file.assembly, file.frequency_hz, options);
+    return coupling::tip_frfs(assembly, file.frequency_hz, options);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     if (parts.where.empty()) parts.where = file.path.string();
@@ -34,7 +35,9 @@ modal::FrfSet holder_with_deviation(const coupling::AssemblyFile& file) {
   return out;
 }
 
-void compare(TipPrediction& prediction, const std::filesystem::path& path) {
+/// @param assembly, tip  as they were when they were measured
+void compare(TipPrediction& prediction, const coupling::Assembly& assembly, const coupling::TipResult& tip,
+             const std::filesystem::path& path) {
   const modal::FrfFile file = modal::read_frfs({path});
   prediction.notes.insert(prediction.notes.end(), file.notes.begin(), file.notes.end());
   add_assumed(prediction.file.assumed, file.assumed);
@@ -42,8 +45,7 @@ void compare(TipPrediction& prediction, const std::filesystem::path& path) {
     prediction.notes.emplace_back(
         "The measured FRFs hold the damping of an exponential window: their peaks are lower than the tool's.");
   }
-  coupling::TipComparison found =
-      coupling::compare_tip(prediction.file.assembly, prediction.tip, file.set, path.string());
+  coupling::TipComparison found = coupling::compare_tip(assembly, tip, file.set, path.string());
   prediction.error = std::move(found.error);
   prediction.measured = std::move(found.measured);
 }
@@ -51,18 +53,31 @@ void compare(TipPrediction& prediction, const std::filesystem::path& path) {
 }  // namespace
 
 TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured,
-                          const coupling::TipOptions& options, Progress& progress, const std::filesystem::path& joint) {
+                          const coupling::TipOptions& options, Progress& progress, const std::filesystem::path& joint,
+                          TipUse use) {
   TipPrediction out;
-  out.file = coupling::read_assembly(assembly, {.joint = joint});
+  out.file = coupling::read_assembly(assembly, {.joint = joint, .cuts = use == TipUse::cutting});
   progress.check();
-  out.tip = couple(out.file, options);
+  out.tip = couple(out.file, out.file.assembly, options);
   out.holder = holder_with_deviation(out.file);
   out.round = coupling::is_round(out.tip.frfs);
   for (const auto* notes : {&out.file.notes, &out.tip.notes})
     out.notes.insert(out.notes.end(), notes->begin(), notes->end());
   if (out.file.holder) out.notes.insert(out.notes.end(), out.file.holder->notes.begin(), out.file.holder->notes.end());
-  if (!measured.empty()) compare(out, measured);
-  out.peaks = coupling::tip_peaks(out.tip.frfs, out.measured ? &*out.measured : nullptr);
+  coupling::Assembly as_measured = out.file.assembly;
+  coupling::TipResult loaded;
+  const bool was_loaded = out.file.removed_accelerometer.mass_kg > 0.0 && !measured.empty();
+  if (was_loaded) {
+    as_measured.accelerometer = out.file.removed_accelerometer;
+    loaded = couple(out.file, as_measured, options);
+    out.file.cutting_note +=
+        " It is on the tip where it is compared with what was measured (error and peaks), which is taken to hold its "
+        "mass: FRFs of hits with acquisition.accelerometer_mass_kg do not.";
+  }
+  if (!out.file.cutting_note.empty()) out.notes.push_back(out.file.cutting_note);
+  const coupling::TipResult& compared = was_loaded ? loaded : out.tip;
+  if (!measured.empty()) compare(out, as_measured, compared, measured);
+  out.peaks = coupling::tip_peaks(compared.frfs, out.measured ? &*out.measured : nullptr);
   return out;
 }
 

@@ -18,16 +18,22 @@ namespace robomill::jobs {
 /// The tip of an assembly as predicted, and how far a measurement of it is away.
 struct TipPrediction {
   coupling::AssemblyFile file;
-  coupling::TipResult tip;
+  coupling::TipResult tip;                ///< of a tool that is to cut: without its accelerometer
   bool round = false;                     ///< yy is xx, and there is nothing between x and y
   std::optional<modal::FrfSet> measured;  ///< of what was measured the FRFs that were predicted too, within the range
-  /// Of each measured FRF, ‖predicted - measured‖ / ‖measured‖ over its lines.
+  /// Of each measured FRF, ‖predicted - measured‖ / ‖measured‖ over its lines, the accelerometer on the tip.
   std::vector<modal::FrfFitError> error;
-  std::vector<coupling::TipPeak> peaks;
+  std::vector<coupling::TipPeak> peaks;  ///< of the tip; of what is compared where something is
   std::vector<std::string> notes;
   /// The measured holder's receptances, with their deviation where they were found from a measurement: whoever couples
   /// to them sees which lines are bad. Empty without a measured holder.
   modal::FrfSet holder = {};
+};
+
+/// What a prediction is for.
+enum class TipUse {
+  frfs,    ///< the FRFs of the assembly as it is described
+  cutting  ///< a cut: a tool that hangs free is rejected, and an accelerometer is on the tip for the comparison alone
 };
 
 /// @param measured  FRFs to compare with; empty: none
@@ -39,7 +45,8 @@ struct TipPrediction {
                                                      const std::filesystem::path& measured = {},
                                                      const coupling::TipOptions& options = {},
                                                      Progress& progress = Progress::none(),
-                                                     const std::filesystem::path& joint = {});
+                                                     const std::filesystem::path& joint = {},
+                                                     TipUse use = TipUse::frfs);
 
 /// tip.json with the lines that are not to be trusted, and why.
 [[nodiscard]] ROBOMILL_API std::string tip_json(const TipPrediction& prediction);

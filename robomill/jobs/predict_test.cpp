@@ -106,6 +106,60 @@ TEST_F(Predicted, PlanWarnsOfAMeasurementFarAway) {
   EXPECT_EQ(warnings().find("differs from the measured one"), std::string::npos);
 }
 
+bool says(const std::vector<std::string>& texts, const std::string& part) {
+  return std::ranges::any_of(texts, [&](const std::string& text) { return text.find(part) != std::string::npos; });
+}
+
+// An accelerometer is on the tip where it is compared with the hits, not where it cuts: the FRFs of the plan are those
+// of the same bar without it, 294.7 Hz in place of 283.2 Hz.
+TEST_F(Predicted, PlanCutsWithoutTheAccelerometer) {
+  const TipPrediction loaded = predict_tip(examples / "joint-bar/mass.toml");
+  const TipPrediction bare = predict_tip(examples / "joint-bar/rigid.toml");
+  modal::write_frfs(folder_.at("tip.json"), loaded.tip.frfs);
+  const auto plan = [&](const std::string& more) {
+    return run_job(folder_.file("job.toml", "[job]\nassembly = \"" + (examples / "joint-bar/mass.toml").string() +
+                                                "\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n" + more),
+                   1);
+  };
+  const PlanResult alone = plan("");
+  const auto expect_bare = [&](const PlanResult& result) {
+    for (const double hz : {250.0, 283.0, 294.5}) {
+      const auto at = [&](const modal::FrfSet& set) {
+        Eigen::Index line = 0;
+        (set.frequency_hz.array() - hz).abs().minCoeff(&line);
+        return set.frfs.at(0).receptance(line);
+      };
+      EXPECT_LT(std::abs(at(*result.frfs) - at(bare.tip.frfs)), 1e-9 * std::abs(at(bare.tip.frfs))) << hz;
+    }
+    ASSERT_FALSE(result.model.modes.empty());
+    EXPECT_NEAR(result.model.modes.at(0).frequency_hz, 294.7, 0.2);
+    EXPECT_TRUE(says(result.notes, "The accelerometer of 0.0031 kg"));
+    EXPECT_TRUE(says(result.prediction->notes, "The accelerometer of 0.0031 kg"));
+  };
+  expect_bare(alone);
+  EXPECT_NEAR(alone.prediction->peaks.at(0).frequency_hz, 294.7, 0.2);
+  const PlanResult compared = plan("measured = \"tip.json\"\n");
+  expect_bare(compared);
+  EXPECT_LT(compared.prediction->error.at(0).relative, 1e-9) << "compared with the mass on";
+  EXPECT_NEAR(compared.prediction->peaks.at(0).frequency_hz, 283.2, 0.2);
+  EXPECT_NEAR(compared.prediction->peaks.at(0).measured_frequency_hz, 283.2, 0.2);
+  EXPECT_FALSE(says(compared.warnings, "differs from the measured one"));
+  EXPECT_FALSE(says(alone.notes, "where it is compared"));
+  EXPECT_TRUE(says(compared.notes, "where it is compared"));
+}
+
+TEST_F(Predicted, PlanRejectsAToolThatHangsFree) {
+  folder_.file("assembly.toml",
+               "[frequency]\nrange_hz = [100, 5000]\nstep_hz = 5\n[[tool]]\nlength_mm = 100\ndiameter_mm = 12\n"
+               "youngs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\nloss_factor = 0.02\n[holder]\nfree = true\n");
+  const std::filesystem::path file = job("assembly = \"assembly.toml\"");
+  const std::string words = test::rejection([&] { static_cast<void>(run_job(file, 1)); });
+  EXPECT_NE(words.find("assembly.toml:11: holder.free = true; must not be true where the tool is to cut"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(test::rejection([&] { static_cast<void>(run_structure(file, 1)); }).find("holder.free"), std::string::npos);
+}
+
 // What robomill joint found replaces the assembly's own: of the rigid bar with it the plan is that of the soft one.
 TEST_F(Predicted, PlanTakesTheJointThatWasFound) {
   const TipPrediction soft = predict_tip(examples / "joint-bar/soft.toml");
@@ -118,9 +172,6 @@ TEST_F(Predicted, PlanTakesTheJointThatWasFound) {
                                "\"\njoint = \"joint.json\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n");
   const PlanResult plan = run_job(folder_.at("job.toml"), 1);
   EXPECT_EQ(plan.prediction->tip.frfs.frfs.at(0).receptance, soft.tip.frfs.frfs.at(0).receptance);
-  const auto says = [](const std::vector<std::string>& texts, const std::string& part) {
-    return std::ranges::any_of(texts, [&](const std::string& text) { return text.find(part) != std::string::npos; });
-  };
   EXPECT_TRUE(says(plan.notes, "The joint is that of joint.json"));
   EXPECT_TRUE(says(plan.warnings, "joint.json: translational damping and rotational damping are not identifiable"));
   folder_.file("joint.json", "{\"joint\": {}}");

@@ -40,8 +40,9 @@ std::vector<decision::ToolResult> try_tools(const coupling::AssemblyFile& assemb
 
 ToolsResult run_tools(const ToolsJob& job, Progress& progress) {
   ToolsResult out;
-  out.assembly = coupling::read_assembly(job.assembly);
+  out.assembly = coupling::read_assembly(job.assembly, {.cuts = true});
   const auto tools = coupling::read_tools(job.tools, out.assembly.assembly.tool.front(), out.assembly.notes);
+  if (!out.assembly.cutting_note.empty()) out.assembly.notes.push_back(out.assembly.cutting_note);
   if (!job.lobes.empty()) {
     out.cut = read_lobes(job.lobes);
     // Each tool brings its own dynamics; those of a workpiece stay.

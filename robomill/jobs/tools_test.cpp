@@ -119,6 +119,41 @@ TEST(Tools, WithoutACutThereAreModesAlone) {
   EXPECT_NE(csv.find("\n\"1/2\"\" mill\","), std::string::npos) << csv;
 }
 
+// What cuts neither carries an accelerometer nor hangs free.
+TEST(Tools, CarryNoAccelerometer) {
+  const test::Folder folder;
+  const std::string text =
+      "[frequency]\nrange_hz = [100, 5000]\nstep_hz = 20\n[[tool]]\nlength_mm = 60\n"
+      "diameter_mm = 12\n" +
+      material;
+  const auto run = [&](const std::string& more) {
+    return run_tools({.assembly = folder.file("assembly.toml", text + more),
+                      .tools = folder.file("tools.csv", "tool,length_mm,diameter_mm\nshort,60,12\n")});
+  };
+  const ToolsResult loaded = run("[accelerometer]\nmass_kg = 0.02\n");
+  const ToolsResult bare = run("");
+  ASSERT_EQ(loaded.tools.size(), 1U);
+  EXPECT_EQ(loaded.tools[0].tip.frfs[0].receptance, bare.tools[0].tip.frfs[0].receptance);
+  ASSERT_FALSE(loaded.assembly.notes.empty());
+  EXPECT_NE(loaded.assembly.notes.back().find("The accelerometer of 0.02 kg"), std::string::npos);
+  const std::string words = test::rejection([&] { static_cast<void>(run("[holder]\nfree = true\n")); });
+  EXPECT_NE(words.find("holder.free = true; must not be true where the tool is to cut"), std::string::npos) << words;
+}
+
+TEST(Tools, RejectAnAssemblyThatDoesNotCut) {
+  const test::Folder folder;
+  coupling::AssemblyFile file = assembly(folder);
+  const auto listed = tools(folder, file);
+  const auto say = [&] {
+    return test::rejection([&] { static_cast<void>(try_tools(file, listed, std::nullopt, 1, Progress::none())); });
+  };
+  file.assembly.accelerometer.mass_kg = 0.003;
+  EXPECT_NE(say().find("accelerometer.mass_kg = 0.003 kg; must be 0"), std::string::npos) << say();
+  file.assembly.accelerometer = {};
+  file.assembly.holder = {.free = true};
+  EXPECT_NE(say().find("holder.free"), std::string::npos) << say();
+}
+
 TEST(Tools, RejectACutOfOneCutter) {
   const test::Folder folder;
   const coupling::AssemblyFile file = assembly(folder);

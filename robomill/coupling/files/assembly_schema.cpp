@@ -139,7 +139,10 @@ const Schema<HolderTable>& holder_table() {
       "holder", "what holds the tool; without it a rigid wall",
       {key("segments", &HolderTable::segments, segment_options_table(), "from the joint to the wall; []: a rigid wall")
            .as("holder.segments"),
-       key("free", &HolderTable::free, "nothing holds the tool: it hangs free, without [joint] and the other keys"),
+       key("free", &HolderTable::free,
+           "nothing holds the tool: it hangs free, without [joint] and the other keys. For couple alone: such a tool "
+           "neither "
+           "cuts nor has a joint"),
        key("receptances", &HolderTable::receptances, "a measured holder, any FRF file; in place of segments"),
        key("points_mm", &HolderTable::position_m,
            "the file holds translations at two or three points (1x:1x, 2x:1x, …), at these distances from the mouth: "
@@ -162,7 +165,12 @@ const Schema<HolderTable>& holder_table() {
 
 const Schema<Accelerometer>& accelerometer_table() {
   static const Schema<Accelerometer> table(
-      "accelerometer", "glued to the tip when it was measured: a mass that the FRFs have, not the tool that cuts",
+      "accelerometer",
+      "glued to the tip when it was measured: a mass that the FRFs have, not the tool that cuts. plan and tools take "
+      "it "
+      "off, and plan compares with it on. FRFs of hits with acquisition.accelerometer_mass_kg do not hold it: leave "
+      "the "
+      "table out for them",
       {key("mass_kg", &Accelerometer::mass_kg, "of it, with what of cable and glue moves with it; 0: none")
            .at_least(0.0)
            .at_most(1.0, "Accelerometers have 0.0005 to 0.05 kg"),

@@ -204,7 +204,17 @@ void read_measured(const io::TomlFile& file, const HolderTable& given, AssemblyF
   holder.receptances = out.holder->receptances;
 }
 
-void hang_free(const io::TomlFile& file, AssemblyFile& out) {
+void hang_free(const io::TomlFile& file, const AssemblyReading& reading, AssemblyFile& out) {
+  if (reading.cuts) {
+    throw file.reject(
+        "holder.free", "must not be true where the tool is to cut",
+        "Describe its holder, or leave [holder] out for a rigid wall. robomill couple predicts a tool that "
+        "hangs free");
+  }
+  if (reading.joint_sought || !reading.joint.empty()) {
+    throw file.reject("holder.free", "must not be true where a joint is looked for or given",
+                      "A tool that hangs free is joined to nothing");
+  }
   for (const char* key : {"holder.segments", "holder.receptances", "holder.points_mm", "holder.artefact",
                           "holder.regularisation", "holder.max_amplification", "joint"}) {
     if (file.has(key)) throw file.reject(key, "must not stand beside holder.free = true", "Nothing holds the tool");
@@ -213,26 +223,37 @@ void hang_free(const io::TomlFile& file, AssemblyFile& out) {
   out.notes.emplace_back("The tool hangs free: nothing holds it.");
 }
 
-void read_accelerometer(io::TomlFile& file, AssemblyFile& out) {
+void read_accelerometer(io::TomlFile& file, const AssemblyReading& reading, AssemblyFile& out) {
   Accelerometer& given = out.assembly.accelerometer;
   accelerometer_table().read(file, "accelerometer", given, "accelerometer.");
   if (given.mass_kg == 0.0) {
     if (file.has("accelerometer.offset_mm")) file.require("accelerometer.mass_kg", "An offset of no mass says nothing");
     return;
   }
-  out.notes.push_back(fmt::format(
-      "The FRFs are those of the tip with an accelerometer of {:.4g} kg on it: without [accelerometer] they "
-      "are the tool's own.",
-      given.mass_kg));
+  if (reading.cuts) {
+    out.cutting_note = fmt::format(
+        "The accelerometer of {:.4g} kg ([accelerometer]) is taken off: a tool that cuts carries none.", given.mass_kg);
+    out.removed_accelerometer = std::exchange(given, {});
+  } else if (reading.joint_sought) {
+    out.notes.push_back(
+        fmt::format("The measured FRFs are taken to hold the accelerometer's {:.4g} kg. Those of hits with "
+                    "acquisition.accelerometer_mass_kg do not: leave [accelerometer] out for them.",
+                    given.mass_kg));
+  } else {
+    out.notes.push_back(fmt::format(
+        "The FRFs are those of the tip with an accelerometer of {:.4g} kg on it: without [accelerometer] they "
+        "are the tool's own.",
+        given.mass_kg));
+  }
 }
 
-void read_holder(io::TomlFile& file, AssemblyFile& out) {
+void read_holder(io::TomlFile& file, const AssemblyReading& reading, AssemblyFile& out) {
   if (!file.has("holder")) return;
   HolderTable given;
   holder_table().read(file, "holder", given);
   check_segments(file, "holder.segments", given.segments);
   check_segments(file, "holder.artefact", given.artefact);
-  if (given.free) return hang_free(file, out);
+  if (given.free) return hang_free(file, reading, out);
   out.receptances = given.receptances;
   if (!given.receptances.empty()) {
     if (file.has("holder.segments")) {
@@ -332,8 +353,8 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
     out.joint_warnings = found->warnings;
   }
   read_joint(file, reading, found, out.assembly.joint);
-  read_holder(file, out);
-  read_accelerometer(file, out);
+  read_holder(file, reading, out);
+  read_accelerometer(file, reading, out);
   search_table().read(file, "search", out.search);
   file.locate([&] { out.search.validate(); });
   add_defaults(file, reading, out);

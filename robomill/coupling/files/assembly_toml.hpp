@@ -33,6 +33,9 @@ struct AssemblyFile {
   std::vector<Assumption> assumed = {};
   /// Where the joint is that of AssemblyReading::joint: that it is, and what of it is not to be relied on.
   std::vector<std::string> joint_notes = {}, joint_warnings = {};
+  /// Where AssemblyReading::cuts took it off the tip: what [accelerometer] describes, and a sentence that it is off.
+  Accelerometer removed_accelerometer = {};
+  std::string cutting_note = {};
 };
 
 struct AssemblyReading {
@@ -42,13 +45,16 @@ struct AssemblyReading {
   /// joint.json, whose four values stand in place of those of [joint], which may be missing there, and so may the
   /// table. The cross stiffness stays the assembly's. Empty: none.
   std::filesystem::path joint = {};
+  /// The tool is to cut: a tool that hangs free is rejected, and the accelerometer is taken off.
+  bool cuts = false;
 };
 
 /// Reads the assembly, its holder's receptances, and makes of these what tip_frfs takes: as they are where they hold
 /// rotations, by coupling::complete_rotations where holder.points_mm says where they were measured, and by
 /// coupling::remove_artefact where holder.artefact says on what.
 /// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks; as
-///     read_joint_json; or if the joint of joint.json has another number of points
+///     read_joint_json; or if the joint of joint.json has another number of points, or the tool hangs free where it is
+///     to cut or its joint is looked for
 [[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const io::TomlSource& source,
                                                       const AssemblyReading& reading = {});
 

@@ -206,6 +206,18 @@ TEST(AssemblyToml, AFreeToolIsHeldByNothing) {
   EXPECT_NE(said("[joint]\ntranslational_stiffness_n_per_m = 1\nrotational_stiffness_n_m_per_rad = 1\n")
                 .find("must not stand beside holder.free = true"),
             std::string::npos);
+  // Nor does a tool that cuts hang free, nor one whose joint is looked for.
+  const auto rejects = [&](const AssemblyReading& reading) {
+    return test::rejection([&] { static_cast<void>(read_assembly(folder.at("assembly.toml"), reading)); });
+  };
+  folder.file("assembly.toml", lines + bar + "[holder]\nfree = true\n");
+  const std::string cutting = rejects({.cuts = true}), sought = rejects({.joint_sought = true});
+  EXPECT_NE(cutting.find("assembly.toml:11: holder.free = true; must not be true where the tool is to cut"),
+            std::string::npos)
+      << cutting;
+  EXPECT_NE(sought.find("assembly.toml:11: holder.free = true; must not be true where a joint is looked for"),
+            std::string::npos)
+      << sought;
   EXPECT_FALSE(read_assembly(folder.file("assembly.toml", lines + bar + "[holder]\nfree = false\nsegments = []\n"))
                    .assembly.holder.free);
 }
@@ -226,6 +238,29 @@ TEST(AssemblyToml, AnAccelerometerStandsOnTheTip) {
   EXPECT_NE(said("[accelerometer]\nmass_kg = -1\n").find("accelerometer.mass_kg = -1 kg"), std::string::npos);
   EXPECT_NE(said("[accelerometer]\nmass_kg = 3.1\n").find("accelerometer.mass_kg = 3.1 kg"), std::string::npos);
   EXPECT_NE(said("[accelerometer]\noffset_mm = 3\n").find("accelerometer.mass_kg"), std::string::npos);
+}
+
+// Of hits whose acquisition.accelerometer_mass_kg was stated the mass is out of the FRFs already.
+TEST(AssemblyToml, AnAccelerometerUnderASoughtJointMustBeInTheFrfs) {
+  const test::Folder folder;
+  const AssemblyFile file =
+      read_assembly(folder.file("assembly.toml", bar + "[accelerometer]\nmass_kg = 0.0031\n"), {.joint_sought = true});
+  EXPECT_DOUBLE_EQ(file.assembly.accelerometer.mass_kg, 0.0031);
+  ASSERT_EQ(file.notes.size(), 1U);
+  EXPECT_NE(file.notes[0].find("acquisition.accelerometer_mass_kg"), std::string::npos) << file.notes[0];
+}
+
+TEST(AssemblyToml, AToolThatCutsCarriesNoAccelerometer) {
+  const test::Folder folder;
+  const std::string lines = "[frequency]\nrange_hz = [100, 101]\nstep_hz = 1\n";
+  const AssemblyFile file =
+      read_assembly(folder.file("assembly.toml", lines + bar + "[accelerometer]\nmass_kg = 0.0031\noffset_mm = 3.5\n"),
+                    {.cuts = true});
+  EXPECT_EQ(file.assembly.accelerometer.mass_kg, 0.0);
+  EXPECT_DOUBLE_EQ(file.removed_accelerometer.mass_kg, 0.0031);
+  EXPECT_DOUBLE_EQ(file.removed_accelerometer.offset_m, 0.0035);
+  EXPECT_TRUE(file.notes.empty());
+  EXPECT_NE(file.cutting_note.find("The accelerometer of 0.0031 kg"), std::string::npos) << file.cutting_note;
 }
 
 // What the file leaves open is listed with its key, of segments by how many of a table leave it.

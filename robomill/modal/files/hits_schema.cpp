@@ -134,7 +134,8 @@ const Schema<Acquisition>& acquisition_table() {
        key("hit_spacing_s", &Acquisition::hit_spacing_s,
            "pulses of a record closer than this are one hit, a double one; later ones are further hits")
            .above(0.0),
-       option(key("accelerometer_mass_kg", &HitOptions::accelerometer_mass_kg, "its effect is removed from the FRFs")
+       option(key("accelerometer_mass_kg", &HitOptions::accelerometer_mass_kg,
+                  "its effect is removed from the FRFs; then not in [accelerometer] of assembly.toml")
                   .at_least(0.0)
                   .at_most(1.0, "An accelerometer weighs grams; is the value in kg?")),
        option(

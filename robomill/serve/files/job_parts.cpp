@@ -266,7 +266,7 @@ class Reader {
     attempt(parts_.frfs, parts_.predicted ? "job.assembly" : "job.frf", [&] {
       parts_.frfs.says = parts_.frfs.file.filename().string();
       if (parts_.predicted) {
-        static_cast<void>(coupling::read_assembly(io::TomlSource(parts_.frfs.file)));
+        static_cast<void>(coupling::read_assembly(io::TomlSource(parts_.frfs.file), {.cuts = true}));
         parts_.frfs.says = "predicted by " + parts_.frfs.says;
       }
       for (const fs::path& file : parts_.frf_files) require(file, "job.frf");
