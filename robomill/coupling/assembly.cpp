@@ -80,6 +80,9 @@ void Joint::validate() const {
 
 void Accelerometer::validate() const {
   require_non_negative("mass_kg", mass_kg, "kg");
+  if (mass_kg > 1.0) {
+    throw InvalidInput("mass_kg", mass_kg, "kg", "must be <= 1", "Accelerometers have 0.0005 to 0.05 kg");
+  }
   require_non_negative("offset_m", offset_m, "m");
 }
 

@@ -68,7 +68,7 @@ struct Holder {
 
 /// An accelerometer that was glued to the tip: a point mass on the tool's axis.
 struct Accelerometer {
-  double mass_kg = 0.0;   ///< >= 0; 0: none
+  double mass_kg = 0.0;   ///< in [0, 1]; 0: none
   double offset_m = 0.0;  ///< of its centre of mass, beyond the tip; >= 0
   /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;

@@ -12,6 +12,7 @@
 #include "robomill/coupling/joint_fit.hpp"
 #include "robomill/coupling/joint_model.hpp"
 #include "testing/coupling/joints.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::coupling {
 namespace distributed_test {
@@ -118,6 +119,23 @@ TEST(Distributed, FindsAJointThatIsSpreadOverTheShank) {
     // One point at the mouth of the same tool, the shank's end clamped behind it, cannot give the same FRF.
     const JointFitResult at_mouth = fit_joint(testing::published_pair(), measured, {});
     EXPECT_GT(at_mouth.relative_error, 100.0 * found.relative_error);
+  }
+}
+
+// A line where the elements overflow has no receptance: nothing is searched with NaN.
+TEST(Distributed, RejectsALineWithoutAReceptance) {
+  for (const int points : {1, 3}) {
+    Assembly assembly = in_collet(3);
+    assembly.joint->points = points;
+    if (points == 1) assembly.joint = Joint{};
+    modal::FrfSet measured = tip_with(in_collet(3), with_values(*in_collet(3).joint, {2e8, 2000.0, 2e4, 2.0}),
+                                      Eigen::VectorXd::LinSpaced(60, 10.0, 4000.0));
+    measured.frequency_hz(59) = 1e200;
+    for (const JointMethod method : {JointMethod::hybrid, JointMethod::ga}) {
+      const std::string said =
+          test::rejection([&] { static_cast<void>(fit_joint(assembly, measured, {.method = method})); });
+      EXPECT_NE(said.find("frequency_hz = 1e+200 Hz"), std::string::npos) << points << ": " << said;
+    }
   }
 }
 

@@ -126,21 +126,19 @@ void note_suspects(const modal::FrfSet& measured, const modal::Frf& frf, detail:
 
 /// The assembly with the joint that is looked for: what of its own joint stays.
 Joint joint_frame(const Assembly& assembly, const JointFitOptions& options) {
-  Joint joint = assembly.joint.value_or(Joint{});
-  Assembly rest = assembly;
-  rest.joint.reset();
-  if (joint.points > 1) {  // where it stands is not looked for
-    rest.joint = joint;
-    rest.joint->translational_stiffness_n_per_m = rest.joint->rotational_stiffness_n_m_per_rad =
-        std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
-  }
-  rest.validate();
-  if (rest.holder.free) {
+  if (assembly.holder.free) {
     throw InvalidInput("holder.free", "must not be true where a joint is looked for",
                        "A tool that hangs free has none");
   }
+  Joint joint = assembly.joint.value_or(Joint{});
   const double cross = joint.cross_stiffness_n_per_rad;
   require_finite("joint.cross_stiffness_n_per_rad", cross, "N/rad");
+  Assembly rest = assembly;  // valid but for the four values, which are looked for
+  rest.joint = joint;
+  rest.joint->translational_stiffness_n_per_m = rest.joint->rotational_stiffness_n_m_per_rad =
+      std::max(1e6, 2.0 * std::abs(cross));
+  rest.joint->translational_damping_n_s_per_m = rest.joint->rotational_damping_n_m_s_per_rad = 0.0;
+  rest.validate();
   if (!(cross * cross < options.upper[0] * options.upper[2])) {
     throw InvalidInput("joint.cross_stiffness_n_per_rad", cross, "N/rad",
                        "must be below the geometric mean of the two stiffnesses' upper bounds");
@@ -238,7 +236,7 @@ void require_affordable_genes(const JointFitOptions& options, Index lines, const
 
 /// An evolution on a part of the lines, and least squares with derivatives on all of them.
 void require_affordable_points(const Joint& joint, const Holder& holder, Index lines) {
-  constexpr double evaluations_of_part = 1e4, lines_of_part = 256.0, evaluations_of_all = 100.0;
+  constexpr double evaluations_of_part = 1e4, lines_of_part = 256.0, evaluations_of_all = 500.0;
   constexpr double bytes_of_point = 500.0, usual_points = 5.0;
   const double all = static_cast<double>(lines);
   require_affordable({.operations = joint.points * operations_of_point(holder) *

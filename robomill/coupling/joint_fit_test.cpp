@@ -437,6 +437,14 @@ TEST(JointFit, RejectsBadInput) {
   Assembly assembly = pair;
   assembly.joint = Joint{.points = 3, .insertion_length_m = 0.02, .shank = {testing::bar(0.01)}};
   EXPECT_EQ(of(assembly, good), "joint.insertion_length_m");
+  for (const int points : {0, -3, 101}) {
+    assembly.joint = Joint{.points = points};
+    EXPECT_EQ(of(assembly, good), "joint.points") << points;
+  }
+  assembly.joint = Joint{.shank = {testing::bar(0.01)}};
+  EXPECT_EQ(of(assembly, good), "joint.shank");
+  assembly.joint = Joint{.translational_damping_n_s_per_m = nan};  // which is looked for
+  EXPECT_EQ(of(assembly, good), "accepted");
   assembly.joint = Joint{.cross_stiffness_n_per_rad = 1e13};
   EXPECT_EQ(of(assembly, good), "joint.cross_stiffness_n_per_rad");
   assembly = pair;

@@ -1,6 +1,7 @@
 #include "robomill/coupling/joint_model.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstring>
@@ -18,6 +19,13 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 
 constexpr std::size_t lanes = 4;
+
+[[noreturn]] void reject_line(double line_hz) {
+  throw InvalidInput("frequency_hz", line_hz, "Hz",
+                     "has no receptance: it is a resonance without damping, or beyond what can be computed",
+                     "Give the segments a loss factor (steel has 0.001 to 0.02), and frequencies of a machine");
+}
+
 // Four doubles that the compiler maps to what the processor has; arithmetic lane by lane rounds the same on all.
 using Four __attribute__((vector_size(lanes * sizeof(double)))) = double;
 
@@ -131,6 +139,15 @@ std::size_t whole_vectors(Index lines) {
 
 }  // namespace
 
+void JointModel::Response::resize(Index padded, bool derivatives) {
+  real.resize(padded);
+  imag.resize(padded);
+  for (std::size_t j = 0; derivatives && j < 2; ++j) {
+    along_real[j].resize(padded);
+    along_imag[j].resize(padded);
+  }
+}
+
 void JointModel::resize(Index lines) {
   lines_ = lines;
   const std::size_t padded = whole_vectors(lines);
@@ -155,9 +172,7 @@ JointModel::JointModel(const std::vector<BeamElement>& tool, const std::vector<E
     const Eigen::Vector2cd w = (one + element.stiffness * base[i]).inverse() * carry.transpose();
     const Complex h = element.clamped(0, 0) + (v * base[i] * carry.transpose()).value();
     if (!std::isfinite(std::abs(h)) || !v.allFinite() || !w.allFinite() || !z.allFinite()) {
-      throw InvalidInput("frequency_hz", line_hz, "Hz",
-                         "is a resonance without damping, where the receptance has no value",
-                         "Give the segments a loss factor: steel has 0.001 to 0.02");
+      reject_line(line_hz);
     }
     const auto set = [&](Constant constant, Complex value) {
       real_[constant][i] = value.real();
@@ -179,6 +194,18 @@ JointModel::JointModel(std::shared_ptr<const DistributedTip> tip, const Eigen::V
     omega_[static_cast<std::size_t>(i)] = 2.0 * std::numbers::pi * frequency_hz(i);
     line_of_.push_back(static_cast<std::size_t>(i));
   }
+  // What the elements of a line have not, it has under no joint; this one stands for any.
+  constexpr double stiff = 1e8;
+  Response response;
+  const double at_least = std::max(stiff, 2.0 * std::abs(cross_));
+  evaluate_distributed({at_least, 0.0, at_least, 0.0}, response, true);
+  for (Index i = 0; i < lines_; ++i) {
+    bool finite = std::isfinite(response.real(i)) && std::isfinite(response.imag(i));
+    for (std::size_t j = 0; j < 2; ++j) {
+      finite = finite && std::isfinite(response.along_real[j](i)) && std::isfinite(response.along_imag[j](i));
+    }
+    if (!finite) reject_line(frequency_hz(i));
+  }
 }
 
 JointModel JointModel::part(const std::vector<Index>& lines) const {
@@ -199,6 +226,7 @@ JointModel JointModel::part(const std::vector<Index>& lines) const {
 }
 
 void JointModel::evaluate_distributed(const JointValues& joint, Response& response, bool derivatives) const {
+  response.resize(static_cast<Index>(omega_.size()), derivatives);
   constexpr std::size_t lines_per_task = 32;
   parallel_for(line_of_.size(), lines_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -228,18 +256,15 @@ void JointModel::evaluate(const JointValues& joint, Response& response) const {
   pair(in.z_u, z_u), pair(in.z_theta, z_theta), pair(in.z_cross, z_cross), pair(in.z_cross_back, z_cross_back);
   pair(in.z_product, z_product);
   const Index padded = static_cast<Index>(omega_.size());
-  response.real.resize(padded);
-  response.imag.resize(padded);
+  if (distributed_) return evaluate_distributed(joint, response, derivatives);
+  response.resize(padded, derivatives);
   Output out{.receptance = {response.real.data(), response.imag.data()}, .along = {}};
   if constexpr (derivatives) {
     for (std::size_t j = 0; j < 2; ++j) {
-      response.along_real[j].resize(padded);
-      response.along_imag[j].resize(padded);
       out.along[j][0] = response.along_real[j].data();
       out.along[j][1] = response.along_imag[j].data();
     }
   }
-  if (distributed_) return evaluate_distributed(joint, response, derivatives);
 #if defined(__x86_64__)
   if (kernels() != Kernels::baseline) return respond_avx2<derivatives>(in, joint, omega_.size(), out);
 #endif

@@ -32,10 +32,11 @@ class JointModel {
  public:
   /// @param tool, base  by line
   /// @param frequency_hz  of the lines, > 0
-  /// @throws InvalidInput at a resonance without damping
+  /// @throws InvalidInput where a line has no receptance, as at a resonance without damping
   JointModel(const std::vector<BeamElement>& tool, const std::vector<Eigen::Matrix2cd>& base,
              const Eigen::VectorXd& frequency_hz, double cross_stiffness_n_per_rad);
   /// Of a joint spread over the shank: H by the climb from its deep end, line by line.
+  /// @throws InvalidInput as above
   JointModel(std::shared_ptr<const DistributedTip> tip, const Eigen::VectorXd& frequency_hz,
              double cross_stiffness_n_per_rad);
   /// Of some lines alone, by their numbers.
@@ -52,6 +53,7 @@ class JointModel {
   struct Response {
     Eigen::ArrayXd real, imag;
     std::array<Eigen::ArrayXd, 2> along_real, along_imag;
+    void resize(Eigen::Index padded, bool derivatives);
   };
   void receptance(const JointValues& joint, Response& response) const;
   void sensitivity(const JointValues& joint, Response& response) const;

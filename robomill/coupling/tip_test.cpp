@@ -457,6 +457,9 @@ TEST(Tip, RejectsWhatItCannotCouple) {
   EXPECT_NE(message(assembly, f).find("accelerometer.mass_kg = -1 kg; must be >= 0"), std::string::npos);
   assembly.accelerometer.mass_kg = std::numeric_limits<double>::infinity();
   EXPECT_NE(message(assembly, f).find("accelerometer.mass_kg"), std::string::npos);
+  assembly.accelerometer.mass_kg = 3.1;
+  EXPECT_NE(message(assembly, f).find("accelerometer.mass_kg = 3.1 kg; must be <= 1"), std::string::npos)
+      << message(assembly, f);
   assembly = published_pair();
   assembly.joint = Joint{.translational_stiffness_n_per_m = -1.0, .rotational_stiffness_n_m_per_rad = 1.0};
   EXPECT_NE(message(assembly, f).find("joint.translational_stiffness_n_per_m = -1"), std::string::npos);

@@ -93,23 +93,29 @@ FrequencyTable read_frequency(io::TomlFile& file, AssemblyFile& out) {
 }
 
 /// Of the receptances of tool, holder and assembly, and of the FRFs as numbers of a document.
-void require_affordable_lines(double lines, double step_hz, double high_hz) {
+/// @param points  of the joint that they are coupled through; 0: at the mouth
+void require_affordable_lines(double lines, double step_hz, double high_hz, double points) {
   constexpr double operations_of_line = 3e3, bytes_of_line = 600.0, usual_step_hz = 1.0, usual_high_hz = 8000.0;
+  constexpr double operations_of_point = 2e3, bytes_of_point = 500.0, usual_points = 5.0;
   require_affordable(
-      {.operations = operations_of_line * lines,
-       .bytes = bytes_of_line * lines,
+      {.operations = (operations_of_line + operations_of_point * points) * lines,
+       .bytes = (bytes_of_line + bytes_of_point * points) * lines,
        .dominant = dominant_of(
            {{.field = "step_hz", .value = step_hz, .unit = "Hz", .times_usual = usual_step_hz / step_hz},
-            {.field = "range_hz", .value = high_hz, .unit = "Hz", .times_usual = high_hz / usual_high_hz}})});
+            {.field = "range_hz", .value = high_hz, .unit = "Hz", .times_usual = high_hz / usual_high_hz},
+            {.field = "joint.points", .value = points, .unit = "points", .times_usual = points / usual_points}})});
 }
 
 /// Evenly from low to high, without 0 Hz; empty where no step is given.
-Eigen::VectorXd lines_of(const io::TomlFile& file, const FrequencyTable& given, const AssemblyFile& out) {
+Eigen::VectorXd lines_of(const io::TomlFile& file, const FrequencyTable& given, const AssemblyReading& reading,
+                         const AssemblyFile& out) {
   if (!given.step_hz) return {};
+  const std::optional<Joint>& joint = out.assembly.joint;
+  const bool spread = joint && joint->points > 1 && !reading.joint_sought;
   const double step_hz = *given.step_hz;
   // A step such as 0.1 must not lose the last line to rounding.
   const double steps = std::floor((out.high_hz - out.low_hz) / step_hz * (1.0 + 1e-12) + 1e-9);
-  file.locate([&] { require_affordable_lines(steps, step_hz, out.high_hz); });
+  file.locate([&] { require_affordable_lines(steps, step_hz, out.high_hz, spread ? joint->points : 0.0); });
   // A structure has no receptance where it would fly away: a range from 0 begins with its first step.
   const double first = out.low_hz > 0.0 ? 0.0 : 1.0;
   const auto count = static_cast<Eigen::Index>(steps - first) + 1;
@@ -342,7 +348,6 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   io::TomlFile file(source);
   AssemblyFile out{.path = source.path};
   const FrequencyTable frequency = read_frequency(file, out);
-  const Eigen::VectorXd lines = lines_of(file, frequency, out);
   file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
   out.assembly.tool = read_tool(file);
   if (out.assembly.tool.empty()) throw file.reject("tool", "must have at least one segment");
@@ -353,6 +358,7 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
     out.joint_warnings = found->warnings;
   }
   read_joint(file, reading, found, out.assembly.joint);
+  const Eigen::VectorXd lines = lines_of(file, frequency, reading, out);
   read_holder(file, reading, out);
   read_accelerometer(file, reading, out);
   search_table().read(file, "search", out.search);
