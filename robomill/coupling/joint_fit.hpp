@@ -49,7 +49,8 @@ struct JointFitOptions {
   double crossover = 0.8;       ///< of ga: share of children by arithmetic crossover, in [0, 1]
   double mutation_rate = 0.01;  ///< of ga with Mutation::uniform: a gene's chance, in [0, 1]
   /// No FRF is taken to be truer than this share of itself, in (0, 1], by an error that all lines may share: it keeps
-  /// deviations honest where data has no noise. At every line σ >= noise_floor · |H|.
+  /// deviations honest where data has no noise. At every line σ >= noise_floor · |H|. A genetic search that lowered its
+  /// objective by no more than this share is stalled.
   double noise_floor = 1e-4;
   /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;
@@ -70,7 +71,8 @@ struct JointKnowledge {
 
 struct JointFitResult {
   /// converged: the last steps gained nearly nothing. hybrid: least squares ended with |Δcost| <= 1e-10 · cost or
-  /// |Δx| <= 1e-13 · |x|. ga: the last fifth of the generations lowered the objective by <= 1 % of itself.
+  /// |Δx| <= 1e-13 · |x|. ga: the last fifth of the generations lowered the objective by <= 1 % of itself, or
+  /// it is 0 but for rounding.
   /// stalled: ga alone; all generations together lowered the objective of the best of the random start by no more than
   /// noise_floor of itself, so that the joint is as good as a random one of the bounds.
   /// not_converged: iterations or generations ran out first; the joint is the best one found.

@@ -397,6 +397,20 @@ TEST(JointFit, StopsWhenAsked) {
   }
 }
 
+// A random start that gives the FRF itself leaves nothing to improve on: that is no stall.
+TEST(JointFit, AStartThatIsTheAnswerIsNotStalled) {
+  JointFitOptions options{.method = JointMethod::ga, .lower = planted, .upper = planted};
+  const modal::FrfSet own =
+      fit_joint(testing::published_pair(), tip_with(testing::published_pair(), joint_of(planted), testing::hertz(50)),
+                options)
+          .model;
+  options.upper[1] = std::nextafter(planted[1], 2.0 * planted[1]);
+  const JointFitResult found = fit_joint(testing::published_pair(), own, options);
+  ASSERT_LT(found.start, 1e-14 * own.frfs[0].receptance.norm());
+  EXPECT_EQ(found.status, JointFitResult::Status::converged);
+  for (const std::string& note : found.notes) EXPECT_EQ(note.find("stalled"), std::string::npos) << note;
+}
+
 TEST(JointFit, RejectsBadInput) {
   const modal::FrfSet good = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(50));
   const Assembly pair = testing::published_pair();

@@ -290,8 +290,8 @@ void FitOptions::validate() const {
   require_between("pso_inertia_end", pso_inertia_end, 0.0, pso_inertia_start,
                   "must lie between 0 and pso_inertia_start");
   require_between("pso_inertia_iterations", pso_inertia_iterations, 1, 1e9, "must be at least 1");
-  require_non_negative("pso_cognitive", pso_cognitive, "");
-  require_non_negative("pso_social", pso_social, "");
+  require_between("pso_cognitive", pso_cognitive, 0.0, 100.0, "must lie between 0 and 100");
+  require_between("pso_social", pso_social, 0.0, 100.0, "must lie between 0 and 100");
   require_between("pso_velocity_fraction", pso_velocity_fraction, 0.0, 1.0, "must lie between 0 (no bound) and 1");
 }
 

@@ -53,17 +53,17 @@ struct FitOptions {
   double stable_damping = 0.05;    ///< … its damping ratio less than this share, > 0 …
   double stable_mac = 0.95;        ///< … and MAC(left) · MAC(right) with the one before is above this, in [0, 1]
 
+  // Of the swarm (published/pso.hpp), which takes its defaults from here.
   int pso_particles = 400;                ///< >= 2
   int pso_max_iterations = 8000;          ///< >= 1
   double pso_frequency_half_width = 0.1;  ///< a mode stays within (1 ± this) of its peak, in (0, 1)
   double pso_max_damping_ratio = 0.1;     ///< no mode of the swarm above it, in (0, 1]
-  /// As of PsoOptions without "pso_".
-  double pso_inertia_start = 0.9;      ///< in [0, 1]
-  double pso_inertia_end = 0.4;        ///< in [0, pso_inertia_start]
-  int pso_inertia_iterations = 300;    ///< >= 1
-  double pso_cognitive = 2.0;          ///< >= 0
-  double pso_social = 2.0;             ///< >= 0
-  double pso_velocity_fraction = 0.1;  ///< in [0, 1], 0: no bound
+  double pso_inertia_start = 0.9;         ///< in [0, 1]
+  double pso_inertia_end = 0.4;           ///< in [0, pso_inertia_start]
+  int pso_inertia_iterations = 300;       ///< over which it falls, >= 1
+  double pso_cognitive = 2.0;             ///< c1, pull of a particle's own best, in [0, 100]
+  double pso_social = 2.0;                ///< c2, pull of the swarm's best, in [0, 100]
+  double pso_velocity_fraction = 0.1;     ///< no velocity above this share of its range, in [0, 1], 0: no bound
 
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;

@@ -258,6 +258,8 @@ TEST(FitInput, RejectsBadOptions) {
       [](FitOptions& o) { o.pso_inertia_end = 0.95; },
       [](FitOptions& o) { o.pso_inertia_iterations = 0; },
       [](FitOptions& o) { o.pso_cognitive = -1.0; },
+      [](FitOptions& o) { o.pso_cognitive = 1e6; },
+      [](FitOptions& o) { o.pso_social = 101.0; },
       [](FitOptions& o) { o.pso_social = nan; },
       [](FitOptions& o) { o.pso_velocity_fraction = 1.1; },
   };

@@ -150,10 +150,13 @@ namespace {
 
 /// Stalled: all generations together brought nothing that an FRF shows; converged: the last fifth of them brought less
 /// than a hundredth.
-JointFitResult::Status end_of(const JointSearch& search, const JointFitOptions& options) {
+/// @param size  ‖H‖: an objective within its rounding is 0
+JointFitResult::Status end_of(const JointSearch& search, const JointFitOptions& options, double size) {
   using Status = JointFitResult::Status;
-  if (options.lower == options.upper) return Status::converged;  // nothing was looked for
   const double last = search.best.back();
+  constexpr double rounding = 1e-12;
+  if (options.lower == options.upper || last <= rounding * size)
+    return Status::converged;  // nothing is left to look for
   if (search.start - last <= options.noise_floor * search.start) return Status::stalled;
   const std::size_t fifth = std::max<std::size_t>(1, search.best.size() / 5);
   const double before = search.best.size() > fifth ? search.best[search.best.size() - 1 - fifth] : search.start;
@@ -180,7 +183,7 @@ JointSearch search_by_genes(const JointModel& model, const Eigen::VectorXcd& mea
   progress.start("genetic algorithm", static_cast<std::size_t>(options.generations));
   const pagmo::algorithm algorithm{Generations(options, random, search.best, progress)};
   std::ranges::copy(algorithm.evolve(population).champion_x(), search.joint.begin());
-  search.status = end_of(search, options);
+  search.status = end_of(search, options, magnitude.matrix().norm());
   return search;
 }
 

@@ -56,6 +56,8 @@ TEST(FitToml, RejectsInTheFilesWords) {
   EXPECT_NE(say("[fit]\nband_hz = [3, 2]\n").find("low < high"), std::string::npos);
   EXPECT_NE(say("[fit]\nmethod = \"magic\"\n").find("\"hybrid\""), std::string::npos);
   EXPECT_NE(say("[fit]\npso_inertia_start = 0.3\n").find("pso_inertia_end"), std::string::npos);
+  EXPECT_NE(say("[fit]\npso_cognitive = 200\n").find("pso_cognitive = 200"), std::string::npos);
+  EXPECT_NE(say("[fit]\npso_social = 200\n").find("pso_social = 200"), std::string::npos);
   EXPECT_NE(say("[fit]\npso_velocity_fraction = 2\n").find("pso_velocity_fraction = 2"), std::string::npos);
   EXPECT_NE(say("[fit]\nmods = 3\n").find("modes"), std::string::npos);
 }

@@ -241,8 +241,10 @@ const Schema<FitOptions>& fit_options_table() {
            "over which it falls, linearly; only then the swarm may stop as converged")
            .at_least(1.0)
            .at_most(1e9),
-       key("pso_cognitive", &FitOptions::pso_cognitive, "c1, pull of a particle's own best").at_least(0.0),
-       key("pso_social", &FitOptions::pso_social, "c2, pull of the swarm's best").at_least(0.0),
+       key("pso_cognitive", &FitOptions::pso_cognitive, "c1, pull of a particle's own best")
+           .at_least(0.0)
+           .at_most(100.0),
+       key("pso_social", &FitOptions::pso_social, "c2, pull of the swarm's best").at_least(0.0).at_most(100.0),
        key("pso_velocity_fraction", &FitOptions::pso_velocity_fraction,
            "no velocity above this share of its unknown's range; 0: no bound")
            .at_least(0.0)

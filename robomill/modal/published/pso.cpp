@@ -453,8 +453,8 @@ void PsoOptions::validate() const {
   require_between("inertia_start", inertia_start, 0.0, 1.0);
   require_at_least("inertia_iterations", inertia_iterations, 1);
   require_between("inertia_end", inertia_end, 0.0, inertia_start);
-  require_non_negative("cognitive", cognitive, "");
-  require_non_negative("social", social, "");
+  require_between("cognitive", cognitive, 0.0, 100.0);
+  require_between("social", social, 0.0, 100.0);
   require_between("velocity_fraction", velocity_fraction, 0.0, 1.0);
   require_at_least("stall_iterations", stall_iterations, 1);
   require_non_negative("stall_tolerance", stall_tolerance, "");

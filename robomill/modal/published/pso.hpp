@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "robomill/base/progress.hpp"
+#include "robomill/modal/fit.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
 namespace robomill::modal {
 
-/// How the particle swarm searches. The numbers are the published ones where the source states them.
+/// How the particle swarm searches. The numbers are the published ones where the source states them; those that a
+/// document sets have their defaults in FitOptions.
 struct PsoOptions {
   /// Modes in all, dealt evenly over the excitations, the first ones getting the rest. 0: of every excitation one a
   /// peak, and one more at the broadest as long as the misfit is above 1 % and that takes a fifth of it away.
@@ -19,27 +21,29 @@ struct PsoOptions {
   std::vector<double> peaks_hz = {};
   /// A frequency stays within this share of the named one; of a picked peak within its half-power half width, which is
   /// kept between 1 % and this. In (0, 1); not stated.
-  double frequency_half_width = 0.1;
+  double frequency_half_width = FitOptions{}.pso_frequency_half_width;
   /// Upper bound of every damping ratio, in (0, 1]. Stated is 1, but four of the eight published ratios are exactly
   /// 0.1.
-  double max_damping_ratio = 0.1;
+  double max_damping_ratio = FitOptions{}.pso_max_damping_ratio;
   /// The swarm sees about so many lines, evenly over the logarithm of frequency, and 15 more around every peak; >= 20,
   /// 0: all lines; not stated. Evenly spaced lines show next to nothing of the lowest modes.
   int lines = 320;
-  int particles = 400;         ///< >= 2
-  int max_iterations = 8000;   ///< >= 1
-  double inertia_start = 0.9;  ///< falls linearly from here at the first iteration, in [0, 1]
-  double inertia_end = 0.4;    ///< to here at inertia_iterations, where it stays, in [0, inertia_start]
+  int particles = FitOptions{}.pso_particles;            ///< >= 2
+  int max_iterations = FitOptions{}.pso_max_iterations;  ///< >= 1
+  double inertia_start =
+      FitOptions{}.pso_inertia_start;  ///< falls linearly from here at the first iteration, in [0, 1]
+  double inertia_end =
+      FitOptions{}.pso_inertia_end;  ///< to here at inertia_iterations, where it stays, in [0, inertia_start]
   /// Iterations over which the inertia falls, >= 1, at most max_iterations. Stated are all 8,000 (eq. 4-25): it would
   /// stand at 0.88 where the published fits stop (281 and 284 iterations), and a swarm with pulls of 2 contracts only
   /// below 0.5 ([Poli2009]).
-  int inertia_iterations = 300;
-  double cognitive = 2.0;  ///< c1, pull of a particle's own best, >= 0
-  double social = 2.0;     ///< c2, pull of the swarm's best, >= 0
+  int inertia_iterations = FitOptions{}.pso_inertia_iterations;
+  double cognitive = FitOptions{}.pso_cognitive;  ///< c1, pull of a particle's own best, in [0, 100]
+  double social = FitOptions{}.pso_social;        ///< c2, pull of the swarm's best, in [0, 100]
   /// No velocity component exceeds this share of its unknown's range, in [0, 1]; not stated. 0: no bound, and the first
   /// velocities are those of 0.1. With the published inertia and pulls a free swarm's steps grow until it lies at its
   /// bounds.
-  double velocity_fraction = 0.1;
+  double velocity_fraction = FitOptions{}.pso_velocity_fraction;
   /// Converged when, the inertia having come down, the best misfit fell by no more than stall_tolerance of itself over
   /// stall_iterations; not stated.
   int stall_iterations = 20;      ///< >= 1
