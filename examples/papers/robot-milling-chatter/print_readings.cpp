@@ -50,7 +50,7 @@ std::string names_of_double_readings() {
 /// readings.csv, and the scores over the readings of table 4-4.
 std::vector<examples::Score> write_readings(const std::filesystem::path& folder) {
   std::string text = "teeth,feed_direction_deg,y_to_the" + names_of_double_readings();
-  for (const double speed : examples::cut_speeds_rpm) text += fmt::format(",limit_{:.0f}_rpm_mm", speed);
+  for (const double speed : examples::cut_table().speeds_rpm) text += fmt::format(",limit_{:.0f}_rpm_mm", speed);
   text += ",agreed_of_6,rank_correlation,peaks_of_8\n";
   std::vector<examples::Score> scores;
   const std::vector<ModeTable> tables = examples::mode_tables();
@@ -81,10 +81,8 @@ void write_scores(const std::filesystem::path& folder, const std::vector<example
 }
 
 std::string_view stated_result(std::size_t speed, double depth_mm) {
-  using Result = examples::StatedCut::Result;
-  for (const examples::StatedCut& cut : examples::stated_cuts()) {
-    if (cut.speed != speed || cut.depth_mm != depth_mm) continue;
-    return cut.result == Result::stable ? "stable" : cut.result == Result::chatter ? "chatter" : "borderline";
+  for (const examples::StatedCut& cut : examples::cut_table().stated) {
+    if (cut.speed == speed && cut.depth_mm == depth_mm) return decision::to_string(cut.result);
   }
   return "";
 }
@@ -93,15 +91,15 @@ void write_cuts(const std::filesystem::path& folder, const CutReading& chosen) {
   std::string text = "spindle_speed_rpm,axial_depth_mm,rotation_hz,tooth_passing_hz,limit_mm,predicted,stated,agrees\n";
   const examples::Evidence found = examples::evidence_of({.cut = chosen, .table = examples::as_data});
   for (std::size_t k = 0; k < found.limit_mm.size(); ++k) {
-    const double rotation_hz = examples::cut_speeds_rpm[k] / 60.0;
-    for (const double depth_mm : examples::cut_depths_mm[k]) {
+    const double rotation_hz = examples::cut_table().speeds_rpm[k] / 60.0;
+    for (const double depth_mm : examples::cut_table().depths_mm[k]) {
       std::string_view agrees;
-      for (const examples::StatedCut& cut : examples::stated_cuts()) {
+      for (const examples::StatedCut& cut : examples::cut_table().stated) {
         if (cut.speed == k && cut.depth_mm == depth_mm)
           agrees = examples::agrees(cut, found.limit_mm[k]) ? "yes" : "no";
       }
-      text += fmt::format("{:.0f},{},{:.4f},{:.4f},{},{},{},{}\n", examples::cut_speeds_rpm[k], depth_mm, rotation_hz,
-                          chosen.teeth * rotation_hz, number_or_none(found.limit_mm[k]),
+      text += fmt::format("{:.0f},{},{:.4f},{:.4f},{},{},{},{}\n", examples::cut_table().speeds_rpm[k], depth_mm,
+                          rotation_hz, chosen.teeth * rotation_hz, number_or_none(found.limit_mm[k]),
                           depth_mm < found.limit_mm[k] ? "stable" : "chatter", stated_result(k, depth_mm), agrees);
     }
   }

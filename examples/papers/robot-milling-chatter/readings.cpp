@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <string>
 
-#include "testing/robot_modes.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/decision/files/limits_schema.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "testing/stability/problems.hpp"
 
 namespace robomill::examples {
 namespace {
-
-constexpr double rpm = std::numbers::pi / 30.0;
 
 stability::LobesOptions searched() {
   stability::LobesOptions options;
@@ -46,6 +50,30 @@ double rank_correlation(const std::array<double, 8>& a, const std::array<double,
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
+/// Rows by speed, four depths at each.
+CutTable read_cut_table() {
+  io::TomlFile file(std::filesystem::path(ROBOMILL_SOURCE_DIR "/data/robot-cuts.toml"));
+  CutTable out;
+  const std::size_t depths = out.depths_mm[0].size();
+  if (file.tables("cuts") != depths * out.speeds_rpm.size()) throw file.reject("cuts", "must hold 32 cuts");
+  for (std::size_t i = 0; i < depths * out.speeds_rpm.size(); ++i) {
+    const std::string path = "cuts[" + std::to_string(i) + "]";
+    decision::TestCut cut;
+    decision::test_cut_table().read(file, path, cut);
+    const std::size_t speed = i / depths;
+    // What was typed, without the rounding of its unit.
+    const double rpm = std::round(cut.spindle_speed_rad_per_s / units::rpm);
+    const double depth_mm = std::round(1e6 * cut.axial_depth_m) / 1e3;
+    if (i % depths == 0) out.speeds_rpm[speed] = rpm;
+    if (rpm != out.speeds_rpm[speed]) throw file.reject(path + ".spindle_speed_rpm", "must be that of four cuts");
+    out.depths_mm[speed][i % depths] = depth_mm;
+    if (cut.result != decision::Verdict::unknown) {
+      out.stated.push_back({.speed = speed, .depth_mm = depth_mm, .result = cut.result});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 const std::array<DoubleReading, 5>& double_readings() {
@@ -76,13 +104,9 @@ std::vector<ModeTable> mode_tables() {
 }
 
 stability::LobesProblem problem_of(const Reading& reading) {
-  stability::LobesProblem problem;
+  stability::LobesProblem problem = stability::testing::robot();
   problem.milling.tool.teeth = reading.cut.teeth;
-  problem.milling.tool.diameter_m = 0.012;
-  problem.milling.immersion = cutting::immersion(cutting::MillingDirection::up, 1.8e-3, 0.012);
-  problem.milling.coefficients = {.tangential_n_per_m2 = 712e6, .radial_n_per_m2 = 287e6};
   problem.feed_direction_rad = reading.cut.feed_direction_rad;
-  problem.dynamics = data::robot_modes();
   for (std::size_t k = 0; k < double_readings().size(); ++k) {
     const DoubleReading& twice = double_readings()[k];
     modal::Mode& mode = problem.dynamics.modes[twice.mode];
@@ -97,39 +121,38 @@ stability::LobesProblem problem_of(const Reading& reading) {
   return problem;
 }
 
-const std::array<StatedCut, 6>& stated_cuts() {
-  using enum StatedCut::Result;
-  static const std::array<StatedCut, 6> all{{{2, 0.6, borderline},
-                                             {2, 0.8, chatter},
-                                             {3, 1.2, stable},
-                                             {3, 1.5, chatter},
-                                             {7, 1.1, stable},
-                                             {7, 1.3, borderline}}};
-  return all;
+const CutTable& cut_table() {
+  static const CutTable table = read_cut_table();
+  return table;
 }
 
-bool agrees(const StatedCut& cut, double limit_mm) {
+bool agrees(const StatedCut& cut, double limit_mm, BorderlineOf of) {
+  using decision::Verdict;
   switch (cut.result) {
-    case StatedCut::Result::stable:
+    case Verdict::stable:
       return limit_mm > cut.depth_mm;
-    case StatedCut::Result::chatter:
+    case Verdict::chatter:
       return limit_mm < cut.depth_mm;
-    case StatedCut::Result::borderline:
-      return std::abs(limit_mm - cut.depth_mm) <= 0.2 * cut.depth_mm;
+    case Verdict::borderline:
+      return std::isfinite(limit_mm) &&
+             std::abs(limit_mm - cut.depth_mm) <= 0.2 * (of == BorderlineOf::depth ? cut.depth_mm : limit_mm);
+    case Verdict::unknown:
+      break;
   }
   return false;
 }
 
-Evidence evidence_of(const Reading& reading) {
+Evidence evidence_of(const Reading& reading, BorderlineOf of) {
+  const CutTable& table = cut_table();
   std::vector<double> speeds;
-  for (const double speed : cut_speeds_rpm) speeds.push_back(speed * rpm);
+  for (const double speed : table.speeds_rpm) speeds.push_back(speed * units::rpm);
   const std::vector<stability::Limit> limits = limit_depths(problem_of(reading), searched(), speeds);
   Evidence out;
   for (std::size_t k = 0; k < limits.size(); ++k) out.limit_mm[k] = depth_mm(limits[k]);
-  for (const StatedCut& cut : stated_cuts()) out.agreed += agrees(cut, out.limit_mm[cut.speed]) ? 1 : 0;
+  for (const StatedCut& cut : table.stated) out.agreed += agrees(cut, out.limit_mm[cut.speed], of) ? 1 : 0;
   std::array<double, 8> middle_mm = {};
   for (std::size_t k = 0; k < middle_mm.size(); ++k) {
-    middle_mm[k] = 0.5 * (cut_depths_mm[k].front() + cut_depths_mm[k].back());
+    middle_mm[k] = 0.5 * (table.depths_mm[k].front() + table.depths_mm[k].back());
   }
   out.correlation = rank_correlation(out.limit_mm, middle_mm);
   // At 6,500 rpm the named peaks are, or lie 17 Hz above, these multiples of rotation; then those at 8,000 rpm.
@@ -138,6 +161,7 @@ Evidence evidence_of(const Reading& reading) {
 }
 
 std::size_t chosen(const std::vector<Score>& scores) {
+  if (scores.empty()) throw InvalidInput("scores", "is empty", "There is no reading to choose");
   const double most = std::ranges::max(scores, {}, &Score::agreed).agreed;
   std::size_t best = scores.size();
   for (std::size_t k = 0; k < scores.size(); ++k) {
@@ -157,7 +181,7 @@ std::vector<double> chart_mm(const Reading& reading, const std::vector<int>& kee
   stability::LobesProblem problem = problem_of(reading);
   problem.keep_modes = keep_modes;
   std::vector<double> speeds = chart_speeds_rpm(), out;
-  for (double& speed : speeds) speed *= rpm;
+  for (double& speed : speeds) speed *= units::rpm;
   for (const stability::Limit& limit : limit_depths(problem, searched(), speeds)) out.push_back(depth_mm(limit));
   return out;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/progress.hpp"
+#include "robomill/decision/test_cuts.hpp"
 #include "robomill/stability/lobes.hpp"
 
 /// What [RobotMillingChatter] leaves open about its 32 cuts, and the evidence for each way to read it.
@@ -43,40 +43,40 @@ inline constexpr ModeTable as_data = {1, 0, 1, 1, 1};
 /// Each line of each double reading with each of the others: 32.
 [[nodiscard]] std::vector<ModeTable> mode_tables();
 
-/// D = 12 mm, 1.8 mm radial, up-milling, Kt = 712, Kr = 287 N/mm², and the modes as read.
+/// stability::testing::robot() with teeth, feed and modes as read.
 [[nodiscard]] stability::LobesProblem problem_of(const Reading& reading);
 
 inline constexpr double deepest_m = 5e-3;  ///< where the search for a limit ends
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-/// The speeds of table 4-5 [rpm], and the depths that were cut at each [mm].
-inline constexpr std::array<double, 8> cut_speeds_rpm = {5000, 5500, 6500, 8000, 9500, 11000, 12500, 15000};
-inline constexpr std::array<std::array<double, 4>, 8> cut_depths_mm = {{{0.5, 0.7, 0.9, 1.0},
-                                                                        {0.8, 1.0, 1.2, 1.4},
-                                                                        {0.4, 0.6, 0.8, 1.0},
-                                                                        {0.8, 1.0, 1.2, 1.5},
-                                                                        {0.5, 0.7, 0.9, 1.0},
-                                                                        {0.4, 0.6, 0.8, 0.9},
-                                                                        {0.5, 0.7, 0.9, 1.0},
-                                                                        {0.9, 1.1, 1.3, 1.5}}};
-
 /// A cut whose result the text states.
 struct StatedCut {
-  std::size_t speed;  ///< in cut_speeds_rpm
+  std::size_t speed;  ///< in CutTable::speeds_rpm
   double depth_mm;
-  enum class Result { stable, chatter, borderline } result;
+  decision::Verdict result;
 };
-[[nodiscard]] const std::array<StatedCut, 6>& stated_cuts();
-/// Stable below the limit, chatter above it, borderline within 20 % of it.
-[[nodiscard]] bool agrees(const StatedCut& cut, double limit_mm);
+
+/// Table 4-5 as data/robot-cuts.toml has it.
+struct CutTable {
+  std::array<double, 8> speeds_rpm = {};                ///< [rpm]
+  std::array<std::array<double, 4>, 8> depths_mm = {};  ///< that were cut at each [mm]
+  std::vector<StatedCut> stated = {};
+};
+[[nodiscard]] const CutTable& cut_table();
+
+/// What the 20 % of a borderline cut are a share of.
+enum class BorderlineOf { depth, limit };
+/// Stable below the limit, chatter above it, borderline where the limit is within 20 % of the cut's depth beside it
+/// (decision::ComparedCut's rule), or, of the other, within 20 % of itself beside the depth.
+[[nodiscard]] bool agrees(const StatedCut& cut, double limit_mm, BorderlineOf of = BorderlineOf::depth);
 
 struct Evidence {
-  std::array<double, 8> limit_mm = {};  ///< at cut_speeds_rpm
-  int agreed = 0;                       ///< of stated_cuts()
+  std::array<double, 8> limit_mm = {};  ///< at CutTable::speeds_rpm
+  int agreed = 0;                       ///< of CutTable::stated
   double correlation = 0.0;  ///< Spearman's, of the limits with the middles of the depths; equal values share a rank
   int peaks = 0;  ///< of the eight multiples of rotation in the named peaks, those that are multiples of tooth passing
 };
-[[nodiscard]] Evidence evidence_of(const Reading& reading);
+[[nodiscard]] Evidence evidence_of(const Reading& reading, BorderlineOf of = BorderlineOf::depth);
 
 /// Of one reading of the cuts, over all 32 of the table.
 struct Score {
@@ -86,6 +86,7 @@ struct Score {
 
 /// The rule: the reading of the cuts with most agreed cuts, in the mean over all readings of the table; where two lie
 /// within half a cut, the one whose limits correlate better with the depths.
+/// @throws InvalidInput of no scores
 [[nodiscard]] std::size_t chosen(const std::vector<Score>& scores);
 
 /// Limits of a pair of modes alone, as fig. 4-11 draws them: the lowest at 4,000 to 16,000 rpm.

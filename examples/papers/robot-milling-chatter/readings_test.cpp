@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "robomill/base/error.hpp"
+
 namespace robomill::examples {
 namespace readings_test {
 
@@ -21,9 +23,9 @@ std::array<double, 8> limits_mm(int teeth, double feed_direction_rad, const Mode
 void expect_near(const std::array<double, 8>& found, const std::array<double, 8>& expected, double share) {
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (expected[k] == no_limit || found[k] == no_limit) {
-      EXPECT_EQ(found[k], expected[k]) << cut_speeds_rpm[k];
+      EXPECT_EQ(found[k], expected[k]) << cut_table().speeds_rpm[k];
     } else {
-      EXPECT_NEAR(found[k], expected[k], share * expected[k] + 0.005) << cut_speeds_rpm[k];
+      EXPECT_NEAR(found[k], expected[k], share * expected[k] + 0.005) << cut_table().speeds_rpm[k];
     }
   }
 }
@@ -63,6 +65,17 @@ TEST(Readings, OfAFeedAndItsReverseAreOne) {
   }
 }
 
+// Source: table 4-5 and the text of [RobotMillingChatter].
+TEST(Readings, HaveTheCutsOfTheData) {
+  const CutTable& table = cut_table();
+  EXPECT_EQ(table.speeds_rpm, (std::array<double, 8>{5000, 5500, 6500, 8000, 9500, 11000, 12500, 15000}));
+  EXPECT_EQ(table.depths_mm[3], (std::array<double, 4>{0.8, 1.0, 1.2, 1.5}));
+  ASSERT_EQ(table.stated.size(), 6U);
+  EXPECT_EQ(table.stated[5].speed, 7U);
+  EXPECT_EQ(table.stated[5].depth_mm, 1.3);
+  EXPECT_EQ(table.stated[5].result, decision::Verdict::borderline);
+}
+
 // The limits of docs/errata.md, to a unit of the last digit there.
 TEST(Readings, HaveTheLimitsOfTheErrata) {
   const double none = no_limit;
@@ -70,13 +83,13 @@ TEST(Readings, HaveTheLimitsOfTheErrata) {
   expect_near(limits_mm(2, along_y), {1.51, 0.89, 0.59, none, 0.28, 0.48, 3.22, none}, 0.0);
 }
 
-std::vector<Score> scores() {
+std::vector<Score> scores(BorderlineOf of = BorderlineOf::depth) {
   std::vector<Score> out;
   const auto count = static_cast<double>(mode_tables().size());
   for (const CutReading& cut : cut_readings()) {
     Score score{.cut = cut};
     for (const ModeTable& table : mode_tables()) {
-      const Evidence found = evidence_of({.cut = cut, .table = table});
+      const Evidence found = evidence_of({.cut = cut, .table = table}, of);
       score.agreed += found.agreed / count;
       score.correlation += found.correlation / count;
     }
@@ -103,6 +116,30 @@ TEST(Readings, AreDecidedForTwoTeethAlongY) {
   }
 }
 
+// With a borderline cut within 20 % of the limit in place of the depth, y to the right agrees at 15,000 rpm too and
+// comes to half a cut: the correlation decides for the same reading.
+TEST(Readings, AreDecidedTheSameWayByTheOtherShare) {
+  const std::vector<Score> all = scores(BorderlineOf::limit);
+  const Score& best = all[chosen(all)];
+  EXPECT_EQ(best.cut.teeth, 2);
+  EXPECT_EQ(best.cut.feed_direction_rad, along_y);
+  EXPECT_FALSE(best.cut.y_to_the_right);
+  EXPECT_DOUBLE_EQ(best.agreed, 4.0);
+  for (const Score& other : all) {
+    if (&other == &best) continue;
+    if (other.cut.teeth == 2 && other.cut.feed_direction_rad == along_y) {
+      EXPECT_NEAR(other.agreed, 3.5, 1e-9);
+      EXPECT_LT(other.correlation, best.correlation);
+    } else {
+      EXPECT_LT(other.agreed, 3.5);
+    }
+  }
+}
+
+TEST(Readings, NoneIsChosenOfNone) {
+  EXPECT_THROW(static_cast<void>(chosen({})), InvalidInput);
+}
+
 // Where the means lie within half a cut, the correlation decides.
 TEST(Readings, WithinHalfACutAreDecidedByTheDepths) {
   EXPECT_EQ(chosen({{.cut = {}, .agreed = 3.0, .correlation = 0.1}, {.cut = {}, .agreed = 2.6, .correlation = 0.9}}),
@@ -112,15 +149,18 @@ TEST(Readings, WithinHalfACutAreDecidedByTheDepths) {
 }
 
 TEST(Readings, AgreeWithACutByItsResult) {
-  const StatedCut border{.speed = 2, .depth_mm = 0.6, .result = StatedCut::Result::borderline};
+  const StatedCut border{.speed = 2, .depth_mm = 0.6, .result = decision::Verdict::borderline};
   EXPECT_TRUE(agrees(border, 0.5));
   EXPECT_TRUE(agrees(border, 0.7));
   EXPECT_FALSE(agrees(border, 0.75));
   EXPECT_FALSE(agrees(border, no_limit));
-  const StatedCut stable{.speed = 3, .depth_mm = 1.2, .result = StatedCut::Result::stable};
+  EXPECT_TRUE(agrees(border, 0.75, BorderlineOf::limit));
+  EXPECT_FALSE(agrees(border, 0.76, BorderlineOf::limit));
+  EXPECT_FALSE(agrees(border, no_limit, BorderlineOf::limit));
+  const StatedCut stable{.speed = 3, .depth_mm = 1.2, .result = decision::Verdict::stable};
   EXPECT_TRUE(agrees(stable, no_limit));
   EXPECT_FALSE(agrees(stable, 1.0));
-  const StatedCut chatter{.speed = 3, .depth_mm = 1.5, .result = StatedCut::Result::chatter};
+  const StatedCut chatter{.speed = 3, .depth_mm = 1.5, .result = decision::Verdict::chatter};
   EXPECT_TRUE(agrees(chatter, 1.0));
   EXPECT_FALSE(agrees(chatter, no_limit));
 }
