@@ -148,12 +148,13 @@ std::string sample_joint(const std::string& text) {
   for (int i = 0; i < 40; ++i) best.push_back(2e-8 + 6e-7 * std::exp(-0.3 * i));
   const Json json = {{"document", "joint/1"},
                      {"joint", joint},
+                     {"points", 1},
                      {"objective", 2e-8},
                      {"relative_error", 0.034},
                      {"std", deviation},
                      {"identifiable", identifiable},
                      {"visible_up_to", {{names[0], 9e8}, {names[2], 4e6}}},
-                     {"convergence", {{"status", "converged"}, {"iterations", 40}, {"best", best}}},
+                     {"convergence", {{"status", "converged"}, {"iterations", 40}, {"start", 9e-7}, {"best", best}}},
                      {"suspect_hz", {701.0, 701.5}},
                      {"notes", Json::array({text.empty() ? "The rotational damping hardly changes the FRF." : text})}};
   return json.dump();
