@@ -12,6 +12,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -146,6 +147,17 @@ TEST_F(Predicted, PlanCutsWithoutTheAccelerometer) {
   EXPECT_FALSE(says(compared.warnings, "differs from the measured one"));
   EXPECT_FALSE(says(alone.notes, "where it is compared"));
   EXPECT_TRUE(says(compared.notes, "where it is compared"));
+}
+
+TEST_F(Predicted, AssemblyHasTheAccelerometerOnTheTip) {
+  std::string text = io::read_file(examples / "joint-bar/mass.toml");
+  text.replace(text.find("mass_kg = 0.0031"), 16, "mass_kg = 0.0031\noffset_mm = 3.5");
+  const std::filesystem::path file = folder_.file("assembly.toml", text);
+  const auto json = nlohmann::json::parse(io::dump(assembly_table().write(predict_tip(file))));
+  EXPECT_EQ(json.at("accelerometer_mass_kg"), 0.0031);
+  EXPECT_DOUBLE_EQ(json.at("accelerometer_offset_mm").get<double>(), 3.5);
+  const TipPrediction bare = predict_tip(examples / "joint-bar/rigid.toml");
+  EXPECT_FALSE(nlohmann::json::parse(io::dump(assembly_table().write(bare))).contains("accelerometer_offset_mm"));
 }
 
 TEST_F(Predicted, PlanRejectsAToolThatHangsFree) {

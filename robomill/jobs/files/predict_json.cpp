@@ -96,6 +96,10 @@ const Schema<TipPrediction>& assembly_table() {
              key(
                  "accelerometer_mass_kg", [](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg; },
                  "glued to the tip")),
+       where([](const Tip& tip) { return tip.file.assembly.accelerometer.mass_kg > 0.0; },
+             key(
+                 "accelerometer_offset_mm", [](const Tip& tip) { return tip.file.assembly.accelerometer.offset_m; },
+                 "of its centre of mass, beyond the tip")),
        key("peaks", &Tip::peaks, tip_peak_table(), "the first of each FRF"), error_key(),
        key(
            "suspect_hz", [](const Tip& tip) { return tip.tip.suspect_hz; },
