@@ -12,9 +12,20 @@ import sys
 import tomllib
 
 OUT = pathlib.Path(sys.argv[1])
-D, E, RHO, ETA, L1, L2 = 0.012, 200e9, 7800.0, 0.02, 0.05090, 0.11892  # as printed, in SI
+HERE = pathlib.Path(__file__).parent
+PAIR = tomllib.loads((HERE / "pair.toml").read_text())  # as printed
+TOOL, HOLDER = PAIR["tool"][0], PAIR["holder"]["segments"][0]
+D, E = TOOL["diameter_mm"] * 1e-3, TOOL["youngs_modulus_gpa"] * 1e9
+RHO, ETA = TOOL["density_kg_per_m3"], TOOL["loss_factor"]
+L1, L2 = HOLDER["length_mm"] * 1e-3, TOOL["length_mm"] * 1e-3
 AREA, INERTIA = math.pi * D**2 / 4, math.pi * D**4 / 64
-JOINT = (97062227.0, 18.633, 95978423.0, 10.399)
+JOINT = tuple(PAIR["joint"][f"{way}_{what}"] for way, what in (
+    ("translational", "stiffness_n_per_m"), ("translational", "damping_n_s_per_m"),
+    ("rotational", "stiffness_n_m_per_rad"), ("rotational", "damping_n_m_s_per_rad")))
+MASS = tomllib.loads((HERE / "bar-mass.toml").read_text())["accelerometer"]["mass_kg"]
+SENSOR = tomllib.loads((HERE / "bar-sensor.toml").read_text())["accelerometer"]["mass_kg"]
+SOFT = tomllib.loads((HERE / "soft.toml").read_text())["joint"]["rotational_stiffness_n_m_per_rad"]
+GENERATIONS = range(PAIR["search"]["generations"] + 1)
 SEEDS = range(1, 21)
 
 
@@ -146,16 +157,13 @@ def mass_at_tip(frequency_hz):
 
 def inputs():
     """What robomill was given."""
-    folder = pathlib.Path(__file__).parent
-    pair = tomllib.loads((folder / "pair.toml").read_text())
-    bar = tomllib.loads((folder / "bar.toml").read_text())["tool"][0]
-    tool, holder = pair["tool"][0], pair["holder"]["segments"][0]
-    return {"unknowns": len(pair["joint"]), "search": pair["search"],
-            "inputs": {"diameter_mm": tool["diameter_mm"], "free_length_mm": tool["length_mm"],
-                       "clamped_length_mm": holder["length_mm"], "bar_length_mm": bar["length_mm"],
-                       "density_kg_per_m3": tool["density_kg_per_m3"],
-                       "youngs_modulus_gpa": tool["youngs_modulus_gpa"],
-                       "poissons_ratio": tool["poissons_ratio"], "loss_factor": tool["loss_factor"]}}
+    bar = tomllib.loads((HERE / "bar.toml").read_text())["tool"][0]
+    return {"unknowns": len(PAIR["joint"]), "search": PAIR["search"],
+            "inputs": {"diameter_mm": TOOL["diameter_mm"], "free_length_mm": TOOL["length_mm"],
+                       "clamped_length_mm": HOLDER["length_mm"], "bar_length_mm": bar["length_mm"],
+                       "density_kg_per_m3": TOOL["density_kg_per_m3"],
+                       "youngs_modulus_gpa": TOOL["youngs_modulus_gpa"],
+                       "poissons_ratio": TOOL["poissons_ratio"], "loss_factor": TOOL["loss_factor"]}}
 
 
 COLOURS = ("#1f6feb", "#d1242f", "#1a7f37", "#9a6700", "#8250df")
@@ -224,14 +232,14 @@ def main():
     with open(OUT / "convergence.csv", "w", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(["generation"] + [f"seed_{seed}_objective_m_per_n" for seed in SEEDS])
-        for generation in range(51):
+        for generation in GENERATIONS:
             rows.writerow([generation] + [b["start"] if generation == 0 else b["best"][generation - 1]
                                           for b in bests.values()])
     plot("convergence.svg",
-         [(f"seed {s}: {bests[s]['status']}", range(51), [bests[s]["start"]] + bests[s]["best"]) for s in range(1, 6)],
-         "generation", "best objective (m/N)", (0, 50), log_y=True)
-    shown = (("clamped bar", "bar"), ("printed joint", "pair"), ("3.1 g on the tip", "bar-sensor"),
-             ("5.56 g on the tip", "bar-mass"), ("1.15e4 N m/rad, no mass", "soft"))
+         [(f"seed {s}: {bests[s]['status']}", GENERATIONS, [bests[s]["start"]] + bests[s]["best"]) for s in range(1, 6)],
+         "generation", "best objective (m/N)", (0, GENERATIONS[-1]), log_y=True)
+    shown = (("clamped bar", "bar"), ("printed joint", "pair"), (f"{1e3 * SENSOR:g} g on the tip", "bar-sensor"),
+             (f"{1e3 * MASS:g} g on the tip", "bar-mass"), (f"{SOFT:g} N m/rad, no mass", "soft"))
     for path, span in (("first-mode.svg", (200, 400)), ("second-mode.svg", (1500, 2000))):
         plot(path, [(n, curve(f"{k}.json")[0], [abs(v) for v in curve(f"{k}.json")[1]]) for n, k in shown],
              "frequency (Hz)", "|H11| (m/N)", span)
