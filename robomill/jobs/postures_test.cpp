@@ -83,7 +83,7 @@ TEST(RunPostures, GivesTheLimitsOfLobesInEachPosture) {
   for (std::size_t p = 0; p < 3; ++p) {
     const LobesJobResult one =
         run_lobes({.lobes = folder.file("lobes.toml", cut + "[dynamics]\ncell = \"cell.toml\"\njoints_deg = " +
-                                                          joints_deg.at(p) + "\n")});
+                                                          joints_deg.at(p) + "\n[uncertainty]\nsamples = 20\ngrid = [2, 4]\n")});
     ASSERT_EQ(one.lobes.limit.size(), result.postures[p].limits.size());
     for (std::size_t s = 0; s < one.lobes.limit.size(); ++s) {
       EXPECT_EQ(one.lobes.limit[s].status, result.postures[p].limits[s].status);

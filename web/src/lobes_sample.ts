@@ -83,7 +83,8 @@ export const comparisonSample: ComparisonDocument = {
   ],
 };
 
-const posture = { joints_deg: [0, 10, 20, 0, 60, 0], axis: [0, 0, 1], gamma_deg: 90 };
+const axis: [number, number, number] = [0, 0, 1];
+const posture = { joints_deg: [0, 10, 20, 0, 60, 0], axis, gamma_deg: 90 };
 
 export const posturesSample: PosturesDocument = {
   document: 'postures/1',
