@@ -66,8 +66,8 @@ void find_spread(const std::vector<PostureLimits>& all, PostureDirection& direct
     sum += (most - least) / mean;
     ++direction.speeds;
   }
-  direction.spread = direction.speeds > 0 ? sum / static_cast<double>(direction.speeds)
-                                          : std::numeric_limits<double>::quiet_NaN();
+  direction.spread =
+      direction.speeds > 0 ? sum / static_cast<double>(direction.speeds) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<PostureDirection> directions_of(const std::vector<PostureLimits>& all) {
@@ -84,7 +84,8 @@ std::vector<PostureDirection> directions_of(const std::vector<PostureLimits>& al
       }
       if (!differ) continue;
       for (const std::size_t number : one.postures) taken[number - 1] = true;
-      std::ranges::stable_sort(one.postures, {}, [&](std::size_t number) { return way(all[i].pose, all[number - 1].pose, direction); });
+      std::ranges::stable_sort(one.postures, {},
+                               [&](std::size_t number) { return way(all[i].pose, all[number - 1].pose, direction); });
       find_spread(all, one);
       out.push_back(std::move(one));
     }
@@ -140,8 +141,7 @@ PosturesResult run_postures(const PosturesJob& job, Progress& progress) {
     own.validate();
     with_words_of(own, [&] {
       PostureLimits row{.number = p + 1, .posture = all[p], .pose = pose_of(cell, all[p].joints), .limits = {}};
-      row.limits =
-          stability::limit_depths(own.problem, own.options, result.spindle_speed_rad_per_s, progress);
+      row.limits = stability::limit_depths(own.problem, own.options, result.spindle_speed_rad_per_s, progress);
       result.postures.push_back(std::move(row));
     });
   }

@@ -33,7 +33,7 @@ struct PostureLimits {
 struct PostureDirection {
   std::string name;                   ///< "x", "y", "z" of the tip in base axes, "gamma": a turn about the tool's axis
   std::vector<std::size_t> postures;  ///< their numbers, by rising value
-  double spread = 0.0;  ///< (greatest - least limit) / their mean, the mean over `speeds`; NaN where these are 0
+  double spread = 0.0;     ///< (greatest - least limit) / their mean, the mean over `speeds`; NaN where these are 0
   std::size_t speeds = 0;  ///< at which each posture has a limit
 };
 

@@ -29,14 +29,13 @@ joint_max_position_deg = [185, 120, 168, 350, 125, 350]
 [tool]
 length_mm = 354.48999730278962
 )";
-const std::array<std::string, 7> joints_deg = {
-    "[-11.1363094, -11.5231738, 21.6488357, 0, 79.8743381, 101.136309]",
-    "[-8.51398793, 8.34566629, 2.31740768, 0, 79.336926, 98.5139879]",
-    "[2.54444375e-14, -12.8248533, 22.6817896, 0, 80.1430637, 90]",
-    "[2.54444375e-14, -14.0938382, 14.040981, 0, 90.0528573, 90]",
-    "[1.27222187e-14, -2.44928824, 13.6570813, 0, 78.792207, 150]",
-    "[1.27222187e-14, -2.44928824, 13.6570813, 180, -78.792207, 30]",
-    "[0, -2.44928824, 13.6570813, 180, -78.792207, 90]"};
+const std::array<std::string, 7> joints_deg = {"[-11.1363094, -11.5231738, 21.6488357, 0, 79.8743381, 101.136309]",
+                                               "[-8.51398793, 8.34566629, 2.31740768, 0, 79.336926, 98.5139879]",
+                                               "[2.54444375e-14, -12.8248533, 22.6817896, 0, 80.1430637, 90]",
+                                               "[2.54444375e-14, -14.0938382, 14.040981, 0, 90.0528573, 90]",
+                                               "[1.27222187e-14, -2.44928824, 13.6570813, 0, 78.792207, 150]",
+                                               "[1.27222187e-14, -2.44928824, 13.6570813, 180, -78.792207, 30]",
+                                               "[0, -2.44928824, 13.6570813, 180, -78.792207, 90]"};
 
 std::string modes_at(double frequency_hz) {
   std::string out;
@@ -81,9 +80,9 @@ TEST(RunPostures, GivesTheLimitsOfLobesInEachPosture) {
       run_postures({.cell = write_cell(folder, {520.0, 500.0, 480.0}), .cut = folder.file("cut.toml", cut)});
   ASSERT_EQ(result.postures.size(), 3U);
   for (std::size_t p = 0; p < 3; ++p) {
-    const LobesJobResult one =
-        run_lobes({.lobes = folder.file("lobes.toml", cut + "[dynamics]\ncell = \"cell.toml\"\njoints_deg = " +
-                                                          joints_deg.at(p) + "\n[uncertainty]\nsamples = 20\ngrid = [2, 4]\n")});
+    const LobesJobResult one = run_lobes(
+        {.lobes = folder.file("lobes.toml", cut + "[dynamics]\ncell = \"cell.toml\"\njoints_deg = " + joints_deg.at(p) +
+                                                "\n[uncertainty]\nsamples = 20\ngrid = [2, 4]\n")});
     ASSERT_EQ(one.lobes.limit.size(), result.postures[p].limits.size());
     for (std::size_t s = 0; s < one.lobes.limit.size(); ++s) {
       EXPECT_EQ(one.lobes.limit[s].status, result.postures[p].limits[s].status);
@@ -94,8 +93,8 @@ TEST(RunPostures, GivesTheLimitsOfLobesInEachPosture) {
 
 TEST(RunPostures, NamesDirectionsInWhichPosturesDiffer) {
   const Folder folder;
-  const PosturesResult result = run_postures({.cell = write_cell(folder, {520, 520, 520, 520, 520, 520, 520}),
-                                              .cut = folder.file("cut.toml", cut)});
+  const PosturesResult result = run_postures(
+      {.cell = write_cell(folder, {520, 520, 520, 520, 520, 520, 520}), .cut = folder.file("cut.toml", cut)});
   ASSERT_EQ(result.directions.size(), 4U);
   const std::array<std::pair<std::string, std::vector<std::size_t>>, 4> expected = {
       {{"x", {1, 2}}, {"y", {1, 3}}, {"z", {3, 4}}, {"gamma", {5, 6, 7}}}};

@@ -262,6 +262,25 @@ TEST(CutTests, FindsChatterThatStartsWithTheRecordingOrTheCut) {
   }
 }
 
+// No speed is given, and the spindle turns faster in chatter that goes on.
+TEST(CutTests, FindsTheCombAnewInChatter) {
+  constexpr double no_hint = -1.0;
+  const SyntheticCut slow{.rotation_hz = 83.0, .chatter_hz = 683.0, .seconds = 3.5};
+  SyntheticCut fast = slow;
+  fast.rotation_hz = 120.0;
+  fast.starts_s = -1.0;
+  std::vector<float> x = vibration(slow);
+  const std::vector<float> then = vibration(fast);
+  x.insert(x.end(), then.begin(), then.end());
+  const Detected detected = detect(slow, x, no_hint);
+  for (std::size_t hop = 120; hop < detected.verdicts.size(); ++hop) {
+    const double t = static_cast<double>(hop + 1) * hop_s;
+    const CutTests::Verdict& verdict = detected.verdicts[hop];
+    EXPECT_TRUE(verdict.chatter) << t;
+    EXPECT_TRUE(verdict.known || (t > 3.5 && t < 4.3)) << t;
+  }
+}
+
 // Another tone as loud is.
 TEST(CutTests, HumIsNoChatter) {
   const SyntheticCut cut{.rotation_hz = 83.0, .seconds = 2.0};
