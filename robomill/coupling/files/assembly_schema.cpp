@@ -141,8 +141,7 @@ const Schema<HolderTable>& holder_table() {
            .as("holder.segments"),
        key("free", &HolderTable::free,
            "nothing holds the tool: it hangs free, without [joint] and the other keys. For couple alone: such a tool "
-           "neither "
-           "cuts nor has a joint"),
+           "neither cuts nor has a joint"),
        key("receptances", &HolderTable::receptances, "a measured holder, any FRF file; in place of segments"),
        key("points_mm", &HolderTable::position_m,
            "the file holds translations at two or three points (1x:1x, 2x:1x, …), at these distances from the mouth: "
