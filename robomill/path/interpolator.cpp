@@ -58,8 +58,10 @@ struct PathInterpolator::Parts {
   std::size_t blocks = 0, path_at = 0, motion_at = 0;
   bool finishing = false, failed = false;
   Pushed failure = {};
+  // Of the thread that calls next().
+  bool at_rest_for_good = false;
   // Of all.
-  alignas(64) std::atomic<bool> held{false};
+  alignas(64) std::atomic<bool> held{false}, ended{false};
   std::atomic<double> override_share{1.0}, override_now{0.0};
 };
 
@@ -133,7 +135,8 @@ Pushed PathInterpolator::push(const program::Block& block, double gamma_rad) noe
   Parts& s = *parts_;
   const std::size_t index = s.blocks;
   if (s.failed) return s.failure;
-  if (s.finishing) return {.status = Pushed::Status::closed, .block = index, .line = block.line};
+  if (s.finishing || s.ended.load(std::memory_order_relaxed))
+    return {.status = Pushed::Status::closed, .block = index, .line = block.line};
   if (!sound(block) || !std::isfinite(gamma_rad)) {
     return {.status = Pushed::Status::invalid, .block = index, .line = block.line};
   }
@@ -164,10 +167,16 @@ Pushed PathInterpolator::finish() noexcept {
 
 PathInterpolator::State PathInterpolator::next(Sample& sample) noexcept {
   Parts& s = *parts_;
-  const bool held = s.held.load(std::memory_order_relaxed);
+  if (s.at_rest_for_good) {
+    s.runner.stand(sample);
+    return State::stopped;
+  }
+  const bool ended = s.ended.load(std::memory_order_relaxed);
+  const bool held = ended || s.held.load(std::memory_order_relaxed);
   const State out = s.runner.next(held ? 0.0 : s.override_share.load(std::memory_order_relaxed), sample);
   s.override_now.store(s.runner.feed_override(), std::memory_order_relaxed);
-  return out;
+  s.at_rest_for_good = ended && out != State::running && out != State::finished;
+  return s.at_rest_for_good ? State::stopped : out;
 }
 
 void PathInterpolator::hold() noexcept {
@@ -175,6 +184,9 @@ void PathInterpolator::hold() noexcept {
 }
 void PathInterpolator::resume() noexcept {
   parts_->held.store(false, std::memory_order_relaxed);
+}
+void PathInterpolator::stop() noexcept {
+  parts_->ended.store(true, std::memory_order_relaxed);
 }
 void PathInterpolator::set_override(double share) noexcept {
   if (!std::isnan(share))
@@ -185,6 +197,9 @@ double PathInterpolator::feed_override() const noexcept {
 }
 double PathInterpolator::ready_s() const noexcept {
   return parts_->runner.ready_s();
+}
+bool PathInterpolator::starved() const noexcept {
+  return parts_->runner.starved();
 }
 
 }  // namespace robomill::path

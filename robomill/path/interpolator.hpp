@@ -29,10 +29,10 @@ struct ROBOMILL_API InterpolatorOptions {
 /// goes on when asked, or when blocks come. Where limits hold the plan back an override above 100 % changes nothing.
 ///
 /// Threads: push() and finish() from one, next() from one other, the rest from any. Nothing allocates or throws after
-/// construction; next(), hold(), resume() and set_override() are wait-free. Memory is that of the look-ahead.
+/// construction; next(), hold(), resume(), stop() and set_override() are wait-free. Memory is that of the look-ahead.
 class ROBOMILL_API PathInterpolator {
  public:
-  /// accepted: taken. full: nothing was taken, try again later. closed: after finish(). invalid: the block is not
+  /// accepted: taken. full: nothing was taken, try again later. closed: after finish() or stop(). invalid: the block is not
   /// finite, its axis is no unit vector or its duration is negative. antipodal: turns the axis by half a circle, to
   /// where no one way leads. unreachable: see `reach`; blocks before it may be meant, which were not yet looked at.
   /// What was planned before is still run, to a stop within limits.
@@ -44,7 +44,7 @@ class ROBOMILL_API PathInterpolator {
     [[nodiscard]] bool accepted() const noexcept { return status == Status::accepted; }
   };
   /// running: moves. waiting: at rest, for blocks. holding: at rest, by hold() or an override of 0. finished: at rest
-  /// at the program's end. stopped: at rest, and nothing follows, push() has reported why.
+  /// at the program's end. stopped: at rest, and nothing follows: by stop(), or push() has reported why.
   enum class State { running, waiting, holding, finished, stopped };
 
   /// @param kinematics  outlives the interpolator
@@ -70,12 +70,17 @@ class ROBOMILL_API PathInterpolator {
 
   void hold() noexcept;
   void resume() noexcept;
+  /// As hold(), and for good: no resume() follows it. At rest the state is `stopped`, and stays so.
+  void stop() noexcept;
   /// Of the programmed feed, within [0, 1.5]; not a number: stays.
   void set_override(double share) noexcept;
   /// The feed override at which the plan was run last.
   [[nodiscard]] double feed_override() const noexcept;
   /// Plan time that is ready [s]; by the thread that calls next().
   [[nodiscard]] double ready_s() const noexcept;
+  /// Whether the last sample is slower than commanded, or at rest, because too little of a program that goes on was
+  /// planned; by the thread that calls next().
+  [[nodiscard]] bool starved() const noexcept;
 
  private:
   struct Parts;

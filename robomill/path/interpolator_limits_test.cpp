@@ -127,5 +127,45 @@ TEST(InterpolatorLimits, HoldWhereverTheProgramBreaksOff) {
   }
 }
 
+// Wherever it is stopped, amid holds and overrides, the machine comes to rest within every limit.
+TEST(InterpolatorLimits, HoldWhereverItIsStopped) {
+  for (const Machine kind : {Machine::tilt_head, Machine::hybrid, Machine::kr210}) {
+    const auto machine = test::make_machine(kind);
+    const SmoothingOptions options = test::published_options(Method::verified);
+    for (int seed = 0; seed < robomill::test::seeds(30); ++seed) {
+      Random random(static_cast<std::uint64_t>(seed), 21);
+      const program::Program program = test::mixed_program(random, {.least_blocks = 60, .most_blocks = 200});
+      const Posture posture = test::posture_for(program, *machine);
+      PathInterpolator path(*machine, options, program.start, posture.gamma_rad[0], posture.start);
+      const std::size_t at = 200 + random.index(4000);
+      std::vector<Sample> samples;
+      Sample sample;
+      State state = State::waiting;
+      std::size_t block = 0;
+      while (state != State::stopped && state != State::finished && samples.size() < 100'000) {
+        while (block < program.blocks.size() && path.push(program.blocks[block]).accepted()) ++block;
+        if (block == program.blocks.size()) static_cast<void>(path.finish());
+        if (random.uniform() < 0.002) path.hold();
+        if (random.uniform() < 0.01) path.resume();
+        if (random.uniform() < 0.005) path.set_override(random.uniform(0.2, 1.0));
+        if (samples.size() == at) path.stop();
+        state = path.next(sample);
+        samples.push_back(sample);
+      }
+      ASSERT_NE(state, State::running) << seed;
+      ASSERT_LT(samples.size(), at + 3000) << seed;
+      for (int i = 0; i < 5; ++i) {
+        EXPECT_EQ(path.next(sample), state);
+        samples.push_back(sample);
+      }
+      // The rest of the program is missing, so that only motion is looked at.
+      const CheckResult result = test::check(program, *machine, options, samples);
+      for (const Violation& violation : result.worst_violations) {
+        if (violation.order >= 1) ADD_FAILURE() << seed << " order " << violation.order << ' ' << violation.ratio;
+      }
+    }
+  }
+}
+
 }  // namespace interpolator_limits_test
 }  // namespace robomill::path

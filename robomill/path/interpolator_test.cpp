@@ -57,6 +57,7 @@ static_assert(noexcept(std::declval<PathInterpolator&>().push(std::declval<const
 static_assert(noexcept(std::declval<PathInterpolator&>().finish()));
 static_assert(noexcept(std::declval<PathInterpolator&>().hold()));
 static_assert(noexcept(std::declval<PathInterpolator&>().resume()));
+static_assert(noexcept(std::declval<PathInterpolator&>().stop()));
 static_assert(noexcept(std::declval<PathInterpolator&>().set_override(1.0)));
 
 // The samples lie on the planner's own path, and the last one where the program ends.
@@ -134,6 +135,81 @@ TEST(PathInterpolator, HoldsAndGoesOn) {
   s.run_to_rest();
   EXPECT_EQ(s.next(), State::finished);
   EXPECT_EQ(s.x_m, 0.1);
+}
+
+// The same way to rest as a hold, sample by sample, and no way on.
+TEST(PathInterpolator, StopsForGood) {
+  Straight held, stopped;
+  for (Straight* const s : {&held, &stopped}) {
+    ASSERT_TRUE(s->path.push(move_to(0.1, 2.0)).accepted());
+    ASSERT_TRUE(s->path.push({.kind = program::Block::Kind::dwell, .end = {}, .duration_s = 1.0}).accepted());
+    ASSERT_TRUE(s->path.push(move_to(0.2, 2.0)).accepted());
+    for (int i = 0; i < 800; ++i) ASSERT_EQ(s->next(), State::running);
+  }
+  held.path.hold();
+  stopped.path.stop();
+  EXPECT_EQ(stopped.path.push(move_to(0.3, 2.0)).status, Status::closed);
+  for (int i = 0; i < 1000; ++i) {
+    const State state = held.next();
+    ASSERT_EQ(stopped.next(), state == State::holding ? State::stopped : state);
+    ASSERT_EQ(stopped.sample.tip_m, held.sample.tip_m);
+    ASSERT_EQ(stopped.sample.time_s, held.sample.time_s);
+  }
+  const double x_m = stopped.x_m;
+  EXPECT_GT(x_m, 0.0);
+  EXPECT_LT(x_m, 0.1);
+  stopped.path.resume();
+  stopped.path.set_override(1.5);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(stopped.next(), State::stopped);
+    ASSERT_EQ(stopped.x_m, x_m);
+  }
+  EXPECT_NEAR(stopped.sample.time_s, 1.899, 1e-9);
+}
+
+// Before it has moved, in a dwell, while it waits for blocks, and at the end, where there is nothing to stop.
+TEST(PathInterpolator, StopsAtRestAtOnce) {
+  Straight begun;
+  ASSERT_TRUE(begun.path.push(move_to(0.1, 2.0)).accepted());
+  begun.path.stop();
+  EXPECT_EQ(begun.next(), State::stopped);
+  Straight dwelling;
+  ASSERT_TRUE(dwelling.path.push({.kind = program::Block::Kind::dwell, .end = {}, .duration_s = 1.0}).accepted());
+  ASSERT_TRUE(dwelling.path.push(move_to(0.1, 2.0)).accepted());
+  ASSERT_TRUE(dwelling.path.finish().accepted());
+  for (int i = 0; i < 500; ++i) dwelling.next();
+  dwelling.path.stop();
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(dwelling.next(), State::stopped);
+  EXPECT_EQ(dwelling.x_m, 0.0);
+  Straight waiting;
+  EXPECT_EQ(waiting.next(), State::waiting);
+  waiting.path.stop();
+  EXPECT_EQ(waiting.next(), State::stopped);
+  Straight finished;
+  ASSERT_TRUE(finished.path.push(move_to(0.01, 0.5)).accepted());
+  ASSERT_TRUE(finished.path.finish().accepted());
+  finished.run_to_rest();
+  finished.path.stop();
+  EXPECT_EQ(finished.next(), State::finished);
+}
+
+// Only where blocks are missing: not at the end, not where it is held.
+TEST(PathInterpolator, KnowsWhenBlocksAreMissing) {
+  Straight s;
+  EXPECT_EQ(s.next(), State::waiting);
+  EXPECT_TRUE(s.path.starved());
+  s.path.hold();
+  EXPECT_EQ(s.next(), State::holding);
+  EXPECT_FALSE(s.path.starved());
+  s.path.resume();
+  ASSERT_TRUE(s.path.push(move_to(0.01, 0.5)).accepted());
+  ASSERT_TRUE(s.path.finish().accepted());
+  do {
+    ASSERT_NE(s.next(), State::waiting);
+    ASSERT_FALSE(s.path.starved());
+  } while (s.x_m < 0.01);
+  EXPECT_EQ(s.next(), State::finished);
+  EXPECT_FALSE(s.path.starved());
 }
 
 TEST(PathInterpolator, OverrideScalesTheFeedUpToTheLimits) {

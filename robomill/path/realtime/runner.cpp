@@ -204,6 +204,7 @@ Runner::State Runner::next(double wanted, Sample& sample) noexcept {
     }
   }
   emit(sample);
+  lacks_ = closed == LookAhead::Closed::no && wanted > 0.0 && (starved_ || stretch_ >= known_);
   return state(wanted, closed);
 }
 

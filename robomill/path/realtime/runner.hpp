@@ -21,8 +21,11 @@ class Runner {
   Runner(LookAhead& ahead, const robot::Kinematics& kinematics, double period_s, const Sample& start);
   /// @param wanted  override; 0: hold
   State next(double wanted, Sample& sample) noexcept;
+  /// At rest: the next sample stands where the last one did.
+  void stand(Sample& sample) noexcept { emit(sample); }
   [[nodiscard]] double feed_override() const noexcept { return override_of(state_.theta); }
   [[nodiscard]] double ready_s() const noexcept;
+  [[nodiscard]] bool starved() const noexcept { return lacks_; }
 
  private:
   /// A cap that the override must meet where it begins.
@@ -62,6 +65,7 @@ class Runner {
   bool resting_ = true;                          // at a rest of the plan
   double wanted_ = 0.0;                          // override
   bool starved_ = false;                         // until more is ready than `known_`
+  bool lacks_ = false;                           // of the last sample, of a program that goes on
   double low_theta_ = 0.0, low_until_s_ = -1.0;  // a target that holds until then
   std::size_t known_ = 0;                        // stretches that are ready
   std::size_t stretch_ = 0, segment_ = 0, piece_ = 0;
