@@ -32,8 +32,8 @@ struct ROBOMILL_API InterpolatorOptions {
 /// construction; next(), hold(), resume(), stop() and set_override() are wait-free. Memory is that of the look-ahead.
 class ROBOMILL_API PathInterpolator {
  public:
-  /// accepted: taken. full: nothing was taken, try again later. closed: after finish() or stop(). invalid: the block is not
-  /// finite, its axis is no unit vector or its duration is negative. antipodal: turns the axis by half a circle, to
+  /// accepted: taken. full: nothing was taken, try again later. closed: after finish() or stop(). invalid: the block is
+  /// not finite, its axis is no unit vector or its duration is negative. antipodal: turns the axis by half a circle, to
   /// where no one way leads. unreachable: see `reach`; blocks before it may be meant, which were not yet looked at.
   /// What was planned before is still run, to a stop within limits.
   struct Pushed {
