@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+// Method: robomill/base/README.md, "Method"
+
 namespace robomill {
 
 /// A queue of bounded room between one thread that writes and one that reads; wait-free on both sides, nothing is

@@ -52,13 +52,13 @@ class ROBOMILL_API MonotonicClock final : public StreamClock {
 
 struct ROBOMILL_API StreamOptions {
   double period_s = 0.0;  ///< in [1e-5, 0.1]; the interpolator's sample period; required
-  double ring_s = 4.0;    ///< in (0, 60]; of set-points that a reader may be behind; from half of it on the motion holds
+  double ring_s = 4.0;  ///< in (0, 60]; of set-points that a reader may be behind; from half of it on the motion holds
   /// @throws InvalidInput naming the member
   void validate() const;
 };
 
-/// Delays: mean and quantiles, in memory of fixed size. Quantiles are the upper end of a bin of 1 us below 1 ms, of 1 ms
-/// above, and never above the largest.
+/// Delays: mean and quantiles, in memory of fixed size. Quantiles are the upper end of a bin of 1 us below 1 ms, of 1
+/// ms above, and never above the largest.
 class ROBOMILL_API DelayStatistics {
  public:
   void add(std::int64_t delay_ns) noexcept;

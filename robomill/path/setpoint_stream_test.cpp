@@ -118,9 +118,8 @@ void expect_same(const std::vector<Setpoint>& setpoints, const std::vector<Sampl
 }
 
 TEST(SetpointStream, HandsOverWhatIsSampledOffline) {
-  const std::pair<Machine, program::Program> cases[] = {{Machine::hybrid, test::s_path()},
-                                                        {Machine::kr210, some_program(1)},
-                                                        {Machine::tilt_head, some_program(2)}};
+  const std::pair<Machine, program::Program> cases[] = {
+      {Machine::hybrid, test::s_path()}, {Machine::kr210, some_program(1)}, {Machine::tilt_head, some_program(2)}};
   for (const auto& [kind, program] : cases) {
     Streamed s(kind, program);
     s.run();
@@ -196,8 +195,7 @@ void expect_within_limits(const Streamed& s) {
     for (int j = 0; j < s.machine->joints(); ++j) {
       ASSERT_LE(std::abs(a[j] - b[j]) * rate, limits.max_velocity[j] * (1 + 1e-6)) << i;
       ASSERT_LE(std::abs(a[j] - 2 * b[j] + c[j]) * rate * rate, limits.max_acceleration[j] * (1 + 1e-6)) << i;
-      ASSERT_LE(std::abs(a[j] - 3 * b[j] + 3 * c[j] - d[j]) * rate * rate * rate, limits.max_jerk[j] * (1 + 1e-6))
-          << i;
+      ASSERT_LE(std::abs(a[j] - 3 * b[j] + 3 * c[j] - d[j]) * rate * rate * rate, limits.max_jerk[j] * (1 + 1e-6)) << i;
     }
     const double now = (p[i].sample.tip_m - p[i - 1].sample.tip_m).norm() * rate;
     ASSERT_LE(now, s.options.max_velocity_m_per_s * (1 + 1e-6)) << i;

@@ -19,7 +19,7 @@ using State = PathInterpolator::State;
 // violates a limit.
 TEST(SetpointThreads, EverySetpointArrives) {
   Random random(1, 41);
-  const program::Program program = test::mixed_program(random, {.least_blocks = 40, .most_blocks = 40});
+  const program::Program program = test::mixed_program(random, {.least_blocks = 8, .most_blocks = 8});
   const auto machine = test::make_machine(Machine::tilt_head);
   const SmoothingOptions options = test::published_options(Method::verified);
   const Posture posture = test::posture_for(program, *machine);

@@ -20,14 +20,14 @@ constexpr int stream_priority = 40;
 
 }  // namespace
 
-void schedule_first(Scheduling& out) {
+void schedule_first(Scheduling& out, int below) {
   // A thread without SCHED_FIFO would be woken up to 50 us late on purpose.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   sched_param param = {};
-  param.sched_priority = stream_priority;
+  param.sched_priority = stream_priority - below;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param);
   out.first_in_first_out = error == 0;
-  out.priority = error == 0 ? stream_priority : 0;
+  out.priority = error == 0 ? param.sched_priority : 0;
   out.why_not = error == 0 ? "" : fmt::format("{} (root, CAP_SYS_NICE or ulimit -r)", io::error_text(error));
 }
 
