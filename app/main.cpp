@@ -24,8 +24,9 @@ namespace robomill::app {
 namespace {
 
 using OwnRun = Exit (*)(const jobs::VerbJob&, const Common&, Progress&);
-constexpr Name<OwnRun> own_runs[] = {{"init", &run_init},     {"monitor", &run_monitor},       {"serve", &run_serve},
-                                     {"schema", &run_schema}, {"completion", &run_completion}, {"man", &run_man}};
+constexpr Name<OwnRun> own_runs[] = {{"init", &run_init},   {"monitor", &run_monitor}, {"smooth --stream", &run_stream},
+                                     {"serve", &run_serve}, {"schema", &run_schema},   {"completion", &run_completion},
+                                     {"man", &run_man}};
 
 /// The verb's work, and what it came to: to standard output, the terminal and --report.
 Exit run(const jobs::VerbJob& job, const Common& common, Progress& progress) {

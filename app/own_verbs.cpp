@@ -72,6 +72,33 @@ Verb monitor_verb() {
           .options = monitor_options()};
 }
 
+Verb stream_verb() {
+  VerbOption cell = jobs::file_option("cell", "cell.toml: the robot, its joints' limits, [smoothing]", {"cell"}, true);
+  cell.job_gives = true;
+  return {.name = "smooth --stream",
+          .purpose = "an NC program to set-points by the clock, one a sample period, with feed hold, override and stop",
+          .more =
+              "Lines of JSON, or CSV by the ending of -o. Commands come from standard input in lines: hold, resume, "
+              "override SHARE (0 to 1.5), stop, status. At the end deadline misses and jitter on standard error; "
+              "--report FILE.json has them.",
+          .example = "smooth part.ngc --cell cell.toml --stream --listen 5005 -o setpoints.csv",
+          .readme = "robomill/path/README.md",
+          .input = jobs::file_option(
+              "program", "an NC program: .ngc .nc .gcode, .apt .cls .cl .ncl .aptsource, .csv; or a job.toml",
+              {"program"}, true),
+          .options = {{.name = "stream", .meaning = "run the program in real time", .required = true},
+                      cell,
+                      plain_option("listen",
+                                   "take commands here too: PORT on loopback (0: any that is free), HOST:PORT, or the "
+                                   "path, with a slash, of a UNIX socket"),
+                      flag_option("held", "begin at rest, until resume is commanded"),
+                      {.name = "posture_deg",
+                       .meaning = "begin the program as near to q1,q2,… as possible, in degrees (default: as at home)",
+                       .takes = Takes::numbers,
+                       .flag = "--posture",
+                       .unit = "deg"}}};
+}
+
 Verb serve_verb() {
   return {.name = "serve",
           .purpose = "the page of a folder, over HTTP",
@@ -130,7 +157,8 @@ Verb man_verb() {
 }  // namespace
 
 std::vector<jobs::Verb> own_verbs() {
-  return {init_verb(), monitor_verb(), jobs::learn_verb(), serve_verb(), schema_verb(), completion_verb(), man_verb()};
+  return {init_verb(),  monitor_verb(), jobs::learn_verb(), stream_verb(),
+          serve_verb(), schema_verb(),  completion_verb(),  man_verb()};
 }
 
 }  // namespace robomill::app

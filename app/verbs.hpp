@@ -34,6 +34,7 @@ inline constexpr std::string_view serve_worker = "serve-worker";
 [[nodiscard]] std::vector<jobs::Verb> own_verbs();
 Exit run_init(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_monitor(const jobs::VerbJob& job, const Common& common, Progress& progress);
+Exit run_stream(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_serve(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_schema(const jobs::VerbJob& job, const Common& common, Progress& progress);
 Exit run_completion(const jobs::VerbJob& job, const Common& common, Progress& progress);

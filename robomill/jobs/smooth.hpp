@@ -1,13 +1,19 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/path/options.hpp"
+#include "robomill/path/smooth.hpp"
 #include "robomill/process/smooth.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/robot/kinematics.hpp"
 
 // Method: robomill/process/README.md, "Smoothed programs (`smooth.hpp`)"
 
@@ -30,5 +36,20 @@ struct SmoothJob {
 /// The same in a cell that has been read, for any robot, from its file.
 [[nodiscard]] ROBOMILL_API process::SmoothResult run_smooth(const SmoothJob& job, const cell::CellFile& cell,
                                                             Progress& progress = Progress::none());
+
+/// A program before its machine, to be run in real time.
+struct OpenedStream {
+  cell::CellFile cell;
+  path::SmoothingFile smoothing = {};
+  std::unique_ptr<robot::Kinematics> machine = {};
+  path::Posture posture = {};
+  std::unique_ptr<program::ProgramFile> program = {};  ///< rewound
+  std::string program_name = {};                       ///< of its file
+  std::vector<std::string> notes = {};
+  std::vector<Assumption> assumed = {};
+};
+/// Method, comparison and options but for the posture have no meaning: PathInterpolator plans.
+/// @throws InvalidInput as run_smooth, or where the axis must be tilted to pass beside a singularity; Interrupted
+[[nodiscard]] ROBOMILL_API OpenedStream open_stream(const SmoothJob& job, Progress& progress = Progress::none());
 
 }  // namespace robomill::jobs

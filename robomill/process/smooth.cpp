@@ -471,6 +471,13 @@ SmoothResult smooth(program::Source& program, const std::filesystem::path& path,
   return result;
 }
 
+PreparedMachine prepare_machine(program::Source& program, const std::filesystem::path& path, const cell::Cell& cell,
+                                const path::SmoothingFile& smoothing, Progress& progress) {
+  Bench bench = {.cell = cell, .smoothing = smoothing, .program = program, .path = path};
+  prepare(bench, {}, progress);
+  return {.machine = std::move(bench.machine), .posture = std::move(bench.posture)};
+}
+
 void place(const SmoothResult& result) {
   if (result.trajectory) result.trajectory->commit();
   if (result.stale) io::remove_file(result.output);

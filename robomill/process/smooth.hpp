@@ -19,6 +19,7 @@
 #include "robomill/path/record/motion_recorder.hpp"
 #include "robomill/path/record/outline.hpp"
 #include "robomill/path/sample.hpp"
+#include "robomill/robot/kinematics.hpp"
 
 // Method: robomill/process/README.md, "Smoothed programs (`smooth.hpp`)"
 
@@ -79,6 +80,16 @@ struct SmoothResult {
 [[nodiscard]] ROBOMILL_API SmoothResult smooth(program::Source& program, const std::filesystem::path& path,
                                                const cell::Cell& cell, const path::SmoothingFile& smoothing,
                                                const SmoothOptions& options, Progress& progress = Progress::none());
+
+/// The machine of a cell with the posture in which a program is smoothed, as smooth() chooses it.
+struct PreparedMachine {
+  std::unique_ptr<robot::Kinematics> machine = {};
+  path::PostureChoice posture = {};
+};
+/// @throws InvalidInput as smooth(); Interrupted
+[[nodiscard]] ROBOMILL_API PreparedMachine prepare_machine(program::Source& program, const std::filesystem::path& path,
+                                                           const cell::Cell& cell, const path::SmoothingFile& smoothing,
+                                                           Progress& progress = Progress::none());
 
 /// Moves a trajectory that was not placed to its place, or takes away what stands there from an earlier
 /// run. Once. @throws InvalidInput if that fails
