@@ -34,6 +34,7 @@
 #include "robomill/path/files/motion_json.hpp"
 #include "robomill/path/files/smooth_object.hpp"
 #include "robomill/path/files/smoothing_schema.hpp"
+#include "robomill/path/files/stream_object.hpp"
 #include "robomill/process/files/blocks_json.hpp"
 #include "robomill/process/files/decide_schema.hpp"
 #include "robomill/process/files/forces_schema.hpp"
@@ -209,6 +210,7 @@ const std::vector<Entry>& documents() {
                                    &postures_table().info(),
                                    &stability::explain_table().info(),
                                    &path::smooth_table().info(),
+                                   &path::stream_table().info(),
                                    &path::motion_table().info(),
                                    &simulation::simulation_table().info(),
                                    &simulation::vibration_table().info(),
