@@ -28,8 +28,8 @@ constexpr int waiting_clients = 8;
 constexpr int highest_port = 65535;
 
 [[noreturn]] void reject_place(const std::string& place, const std::string& rule, const std::string& hint) {
-  throw InvalidInput(InvalidInput::Parts{
-      .field = "--listen", .value = "\"" + printable(place) + "\"", .rule = rule, .hint = hint});
+  throw InvalidInput(
+      InvalidInput::Parts{.field = "--listen", .value = "\"" + printable(place) + "\"", .rule = rule, .hint = hint});
 }
 
 /// HOST:PORT, [HOST]:PORT or PORT as an address.

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/io/system/descriptor.hpp"
 #include "commands.hpp"
+#include "robomill/io/system/descriptor.hpp"
 
 namespace robomill::app {
 

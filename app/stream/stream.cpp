@@ -124,7 +124,8 @@ class Operator {
   std::string answer(std::optional<std::string_view> line) {
     const ParsedCommand parsed =
         line ? parse_command(*line)
-             : ParsedCommand{.command = {}, .error = fmt::format("a command has at most {} bytes", CommandLines::longest)};
+             : ParsedCommand{.command = {},
+                             .error = fmt::format("a command has at most {} bytes", CommandLines::longest)};
     if (!parsed.error.empty()) {
       ++rejected;
       return "error: " + parsed.error;
@@ -149,8 +150,8 @@ class Operator {
         break;
     }
     return fmt::format("ok {}, {} set-points, {} misses, {} starved, {} overruns",
-                       name_in(path::interpolator_state_names, stream_->state()), stream_->periods(),
-                       stream_->misses(), stream_->starved(), stream_->overruns());
+                       name_in(path::interpolator_state_names, stream_->state()), stream_->periods(), stream_->misses(),
+                       stream_->starved(), stream_->overruns());
   }
 
   std::uint64_t carried_out = 0, rejected = 0;
@@ -255,8 +256,8 @@ bool run_threads(SetpointStream& stream, Planner& planner, SetpointWriter& write
 
 jobs::OpenedStream open(const jobs::VerbJob& job, Progress& progress) {
   try {
-    return jobs::open_stream(
-        {.program = job.input(), .cell = job.file("cell"), .near_deg = job.numbers("posture_deg")}, progress);
+    return jobs::open_stream({.program = job.input(), .cell = job.file("cell"), .near_deg = job.numbers("posture_deg")},
+                             progress);
   } catch (const InvalidInput& error) {
     throw job.about_option(error, "--posture", "posture_deg", 1.0);
   }
@@ -292,9 +293,8 @@ void report(const Common& common, const StreamedProgram& streamed) {
   if (!common.quiet) {
     fmt::print(stderr, "{}", text);
   } else if (streamed.report.misses + streamed.report.starved + streamed.report.overruns > 0) {
-    fmt::print(stderr, "{}{} deadline misses, {} starved set-points, {} overruns of {} set-points\n",
-               io::warning_label, streamed.report.misses, streamed.report.starved, streamed.report.overruns,
-               streamed.report.periods);
+    fmt::print(stderr, "{}{} deadline misses, {} starved set-points, {} overruns of {} set-points\n", io::warning_label,
+               streamed.report.misses, streamed.report.starved, streamed.report.overruns, streamed.report.periods);
   }
   if (common.report.empty()) return;
   page::Report page;
@@ -318,12 +318,13 @@ Exit run_stream(const jobs::VerbJob& job, const Common& common, Progress& progre
   SetpointStream stream(path, {.period_s = period_s});
   if (job.flag("held")) stream.hold();
   Operator commands(stream);
-  CommandIntake intake({.input = STDIN_FILENO, .listen = job.text("listen")},
-                       [&](std::optional<std::string_view> line) { return commands.answer(line); },
-                       [&](const std::string& answer) {
-                         const bool bad = answer.starts_with("error");
-                         if (bad || !common.quiet) fmt::print(stderr, "{}\n", answer);
-                       });
+  CommandIntake intake(
+      {.input = STDIN_FILENO, .listen = job.text("listen")},
+      [&](std::optional<std::string_view> line) { return commands.answer(line); },
+      [&](const std::string& answer) {
+        const bool bad = answer.starts_with("error");
+        if (bad || !common.quiet) fmt::print(stderr, "{}\n", answer);
+      });
   if (!common.quiet) say(opened);
   if (!intake.address().empty() && !common.quiet) fmt::print(stderr, "commands at {}\n", printable(intake.address()));
   if (intake.is_public()) {

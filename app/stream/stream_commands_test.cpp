@@ -46,22 +46,10 @@ TEST(StreamCommands, AreWords) {
 }
 
 TEST(StreamCommands, AreRejectedInOneLine) {
-  const std::vector<std::string> bad = {"Hold",
-                                        "hold on",
-                                        "override",
-                                        "override 1.51",
-                                        "override -0.1",
-                                        "override nan",
-                                        "override inf",
-                                        "override 0.5 0.6",
-                                        "override 50%",
-                                        "override 1e400",
-                                        "stop;hold",
-                                        std::string("ho\0ld", 5),
-                                        "\x1b[2J",
-                                        "\xff\xfe",
-                                        "GET / HTTP/1.1",
-                                        std::string(200, 'x')};
+  const std::vector<std::string> bad = {"Hold",          "hold on",        "override",       "override 1.51",
+                                        "override -0.1", "override nan",   "override inf",   "override 0.5 0.6",
+                                        "override 50%",  "override 1e400", "stop;hold",      std::string("ho\0ld", 5),
+                                        "\x1b[2J",       "\xff\xfe",       "GET / HTTP/1.1", std::string(200, 'x')};
   for (const std::string& text : bad) {
     const ParsedCommand parsed = parse_command(text);
     EXPECT_FALSE(parsed.command) << text;
@@ -70,7 +58,8 @@ TEST(StreamCommands, AreRejectedInOneLine) {
   }
   EXPECT_EQ(parse_command("override 2").error,
             "override must be a share of the programmed feed from 0 to 1.5, not \"2\"; 0.5 is half");
-  EXPECT_EQ(parse_command("hlod").error, "\"hlod\" is no command; known are hold, resume, override SHARE, stop, status");
+  EXPECT_EQ(parse_command("hlod").error,
+            "\"hlod\" is no command; known are hold, resume, override SHARE, stop, status");
 }
 
 // However bytes are cut, the lines are the same; and no line is longer than it may be.
@@ -111,12 +100,13 @@ TEST(StreamCommands, LinesDoNotDependOnHowTheyCome) {
 /// What answers a line with itself.
 struct Echo {
   explicit Echo(const std::string& listen, int input = -1)
-      : intake({.input = input, .listen = listen},
-               [this](std::optional<std::string_view> line) {
-                 taken.push_back(line ? std::string(*line) : "too long");
-                 return "ok " + taken.back();
-               },
-               [this](const std::string& answer) { printed.push_back(answer); }) {}
+      : intake(
+            {.input = input, .listen = listen},
+            [this](std::optional<std::string_view> line) {
+              taken.push_back(line ? std::string(*line) : "too long");
+              return "ok " + taken.back();
+            },
+            [this](const std::string& answer) { printed.push_back(answer); }) {}
   void run() {
     for (int i = 0; i < 20; ++i) intake.poll(std::chrono::milliseconds(5));
   }
@@ -229,9 +219,9 @@ TEST(CommandIntake, RejectsBadPlaces) {
   const robomill::test::Folder folder;
   const std::string file = (folder.path() / "file").string(), dead = (folder.path() / "dead").string();
   folder.file("file", "kept");
-  const std::vector<std::string> places = {"x",          "70000", "-1",           "1.2.3:80", "127.0.0.1:",
-                                           "5005x",      file,    "8.8.8.8:5005", "/no/such/folder/s",
-                                           "/" + std::string(300, 's')};
+  const std::vector<std::string> places = {
+      "x",     "70000", "-1",           "1.2.3:80",          "127.0.0.1:",
+      "5005x", file,    "8.8.8.8:5005", "/no/such/folder/s", "/" + std::string(300, 's')};
   for (const std::string& place : places) {
     EXPECT_EQ(robomill::test::field_of([&] { const Echo echo(place); }), "--listen") << place;
   }

@@ -143,8 +143,7 @@ TEST_F(StreamVerb, ASignalStopsIt) {
   ASSERT_EQ(::mkfifo(folder_.at("pipe").c_str(), 0600), 0);
   const test::Process reader({"sh", "-c", "cat '" + folder_.at("pipe").string() + "'"}, folder_.at("read.txt"),
                              folder_.at("reader-err.txt"));
-  const test::Process stream =
-      start("smooth long.ngc --cell cell.toml --stream -o pipe --report stream.json");
+  const test::Process stream = start("smooth long.ngc --cell cell.toml --stream -o pipe --report stream.json");
   ASSERT_TRUE(test::wait_for([&] { return slurp(folder_.at("read.txt")).find("running") != std::string::npos; }));
   stream.signal(SIGINT);
   ASSERT_TRUE(test::wait_for([&] { return !stream.running() && !reader.running(); }));
@@ -159,7 +158,8 @@ TEST_F(StreamVerb, ASignalStopsIt) {
 // The rest of the program is not run in silence.
 TEST_F(StreamVerb, AReaderThatLeavesEndsItWithAnError) {
   const Ended run =
-      shell("{ '" ROBOMILL_PROGRAM "' smooth long.ngc --cell cell.toml --stream </dev/null; echo \"exit $?\" >&2; } | head -n 3");
+      shell("{ '" ROBOMILL_PROGRAM
+            "' smooth long.ngc --cell cell.toml --stream </dev/null; echo \"exit $?\" >&2; } | head -n 3");
   EXPECT_NE(run.err.find("exit 1\n"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("robomill: standard output cannot be written: its reader has closed it"), std::string::npos)
       << run.err;

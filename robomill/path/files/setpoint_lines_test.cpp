@@ -28,7 +28,8 @@ Setpoint random_setpoint(Random& random) {
 TEST(SetpointLines, ReadBackTheSame) {
   Random random(1, 51);
   EXPECT_EQ(setpoint_header(SetpointFormat::json, 6), "");
-  EXPECT_EQ(setpoint_header(SetpointFormat::csv, 5), "time_s,q1,q2,q3,q4,q5,x_mm,y_mm,z_mm,i,j,k,block,override,state\n");
+  EXPECT_EQ(setpoint_header(SetpointFormat::csv, 5),
+            "time_s,q1,q2,q3,q4,q5,x_mm,y_mm,z_mm,i,j,k,block,override,state\n");
   for (int n = 0; n < 200; ++n) {
     const Setpoint point = random_setpoint(random);
     const int joints = n % 2 == 0 ? 6 : 5;

@@ -38,7 +38,8 @@ const Schema<StreamedProgram>& stream_table() {
   };
   static const Schema<Stream> table(
       "stream", "a program that was streamed as set-points by the clock",
-      {key("program", &Stream::program, "name of its file"), key("cell", &Stream::cell, "name of its file"),
+      {key("program", &Stream::program, "name of its file"),
+       key("cell", &Stream::cell, "name of its file"),
        key("end", &Stream::end, stream_end_names, "how it ended: at the program's end, by command, by a signal"),
        key("failure", &Stream::failure, "in words; none: it did not fail").nullable(),
        key(
@@ -108,9 +109,10 @@ std::string stream_text(const StreamedProgram& streamed) {
   out += "wake-up    of it: " + delay(report.wake_up) + "\n";
   out += fmt::format("lines      {} written, {} of them after the end of their period; {}\n", streamed.written.lines,
                      streamed.written.late, delay(streamed.written.delay));
-  out += fmt::format("starved    {} set-points\noverruns   {} set-points lost, {} of them in motion; held {} times for "
-                     "the reader\n",
-                     report.starved, report.overruns, report.overruns_in_motion, report.reader_holds);
+  out += fmt::format(
+      "starved    {} set-points\noverruns   {} set-points lost, {} of them in motion; held {} times for "
+      "the reader\n",
+      report.starved, report.overruns, report.overruns_in_motion, report.reader_holds);
   if (report.shifts > 0) {
     out += fmt::format("shifts     the schedule was moved on {} times, by {:.6g} s in all\n", report.shifts,
                        report.shifted_s);
