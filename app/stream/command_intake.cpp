@@ -157,7 +157,7 @@ void CommandIntake::accept_client() {
 
 /// False: the connection ends.
 bool CommandIntake::serve(Client& client) {
-  std::array<char, read_bytes> bytes;
+  std::array<char, read_bytes> bytes = {};
   const ssize_t count = ::recv(client.socket.get(), bytes.data(), bytes.size(), 0);
   if (count < 0) return errno == EAGAIN || errno == EINTR;
   bool stays = count > 0;
@@ -180,7 +180,7 @@ bool CommandIntake::serve(Client& client) {
 }
 
 void CommandIntake::read_input() {
-  std::array<char, read_bytes> bytes;
+  std::array<char, read_bytes> bytes = {};
   const ssize_t count = ::read(input_, bytes.data(), bytes.size());
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
   const auto take = [this](std::optional<std::string_view> line) {

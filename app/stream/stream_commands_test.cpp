@@ -16,6 +16,7 @@
 #include "app/stream/command_intake.hpp"
 #include "app/stream/commands.hpp"
 #include "robomill/base/random.hpp"
+#include "testing/processes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::app {

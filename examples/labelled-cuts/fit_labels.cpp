@@ -1,5 +1,5 @@
-// fit_labels [SEEDS]: cuts of a known machine with the labels of two operators; what modes fitted to the labels, a depth
-// threshold and a tap test say of other cuts of that machine.
+// fit_labels [SEEDS]: cuts of a known machine with the labels of two operators; what modes fitted to the labels, a
+// depth threshold and a tap test say of other cuts of that machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ void run(int seeds) {
     const auto number = static_cast<std::uint64_t>(seed);
     const std::vector<LabelledCut> cuts = label_cuts(number);
     const LabelFit fit = fit_to_labels(cuts, number);
-    fmt::print("{:<6}x {:.0f}, y {:.0f}{:>22.1f}, {:.1f}\n", seed, fit.modes.frequency_hz[0],
-               fit.modes.frequency_hz[1], fit.log_likelihood, fit.log_likelihood_of_true);
+    fmt::print("{:<6}x {:.0f}, y {:.0f}{:>22.1f}, {:.1f}\n", seed, fit.modes.frequency_hz[0], fit.modes.frequency_hz[1],
+               fit.log_likelihood, fit.log_likelihood_of_true);
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const Question question = ask(kinds[k].kind, number);
       labels[k].push_back(answered(question, kinds[k].kind, fit.modes.model()));

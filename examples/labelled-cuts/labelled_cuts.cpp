@@ -101,9 +101,10 @@ std::vector<LabelledCut> label_cuts(std::uint64_t seed) {
   constexpr int speeds = 12, depths = 10;
   Random random(seed);
   std::vector<LabelledCut> out;
-  std::vector<double> all;
+  std::vector<double> all(speeds);
   for (int i = 0; i < speeds; ++i) {
-    all.push_back(std::lerp(speeds_rpm[0], speeds_rpm[1], static_cast<double>(i) / (speeds - 1)) * units::rpm);
+    all[static_cast<std::size_t>(i)] =
+        std::lerp(speeds_rpm[0], speeds_rpm[1], static_cast<double>(i) / (speeds - 1)) * units::rpm;
   }
   const std::vector<double> limit_m = limits(true_modes.model(), {}, all);
   for (std::size_t i = 0; i < all.size(); ++i) {

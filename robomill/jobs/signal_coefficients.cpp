@@ -103,7 +103,7 @@ SignalCoefficientsResult run_signal_coefficients(const SignalCoefficientsJob& jo
       throw InvalidInput("channels", fmt::format("must have all three components: {} is missing", "xyz"[axis]));
     }
   }
-  process::Cut cut = file;
+  process::Cut cut = static_cast<const process::Cut&>(file);
   cut.joints_rad.clear();
   cut.dynamics = cut.workpiece_dynamics = {};
   if (file.document->has("coefficients")) {

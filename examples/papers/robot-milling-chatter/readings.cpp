@@ -99,6 +99,7 @@ std::vector<CutReading> cut_readings() {
 
 std::vector<ModeTable> mode_tables() {
   std::vector<ModeTable> out;
+  out.reserve(32);
   for (int k = 0; k < 32; ++k) out.push_back({k >> 4 & 1, k >> 3 & 1, k >> 2 & 1, k >> 1 & 1, k & 1});
   return out;
 }
