@@ -38,13 +38,15 @@ void run(int seeds) {
     const auto number = static_cast<std::uint64_t>(seed);
     const std::vector<LabelledCut> cuts = label_cuts(number);
     const LabelFit fit = fit_to_labels(cuts, number);
+    const double threshold_m = threshold_of(cuts);
+    const robomill::modal::ModalModel tapped = tap_test(number);
     fmt::print("{:<6}x {:.0f}, y {:.0f}{:>22.1f}, {:.1f}\n", seed, fit.modes.frequency_hz[0], fit.modes.frequency_hz[1],
                fit.log_likelihood, fit.log_likelihood_of_true);
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       const Question question = ask(kinds[k].kind, number);
       labels[k].push_back(answered(question, kinds[k].kind, fit.modes.model()));
-      depth[k].push_back(answered(question, threshold_of(cuts)));
-      tap[k].push_back(answered(question, kinds[k].kind, tap_test(number)));
+      depth[k].push_back(answered(question, threshold_m));
+      tap[k].push_back(answered(question, kinds[k].kind, tapped));
     }
   }
   fmt::print("\n{:<26}{:>26}{:>26}{:>26}\n", "right of 400, near limits", "fitted to the labels", "depth threshold",

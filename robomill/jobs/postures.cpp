@@ -100,14 +100,18 @@ robot::ToolPose pose_of(const cell::Cell& cell, const std::vector<double>& joint
   return robot::tool_pose(in_base, robot::forward(cell.robot.arm, q));
 }
 
-/// A note of one posture is of that posture, one of several stands once.
-void take_notes(const std::vector<std::string>& of_posture, std::size_t number, const std::vector<std::string>& shared,
-                std::vector<std::string>& notes) {
-  for (const std::string& text : of_posture) {
-    if (std::ranges::find(shared, text) != shared.end()) {
-      if (std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
-    } else {
-      notes.push_back(fmt::format("Posture {}: {}", number, text));
+/// What is said of every posture stands once, anything else with its posture.
+void take_notes(const std::vector<LobesFile>& of_each, std::vector<std::string>& notes) {
+  const auto of_all = [&](const std::string& text) {
+    return std::ranges::all_of(of_each, [&](const LobesFile& one) { return std::ranges::count(one.notes, text) > 0; });
+  };
+  for (std::size_t p = 0; p < of_each.size(); ++p) {
+    for (const std::string& text : of_each[p].notes) {
+      if (!of_all(text)) {
+        notes.push_back(fmt::format("Posture {}: {}", p + 1, text));
+      } else if (p == 0) {
+        notes.push_back(text);
+      }
     }
   }
 }
@@ -145,10 +149,8 @@ PosturesResult run_postures(const PosturesJob& job, Progress& progress) {
       result.postures.push_back(std::move(row));
     });
   }
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    take_notes(of_each[p].notes, p + 1, of_each[p == 0 ? all.size() - 1 : 0].notes, cut.notes);
-    add_assumed(cut.assumed, of_each[p].assumed);
-  }
+  take_notes(of_each, cut.notes);
+  for (const LobesFile& one : of_each) add_assumed(cut.assumed, one.assumed);
   result.directions = directions_of(result.postures);
   result.cut = std::move(cut);
   return result;

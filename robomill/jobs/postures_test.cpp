@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -134,6 +135,25 @@ TEST(RunPostures, SaysThatTheCutsOwnStructureDoesNotCount) {
   ASSERT_FALSE(result.cut.notes.empty());
   EXPECT_NE(result.cut.notes.front().find("is replaced"), std::string::npos);
   EXPECT_TRUE(result.directions.empty());
+}
+
+// The first and the last posture lean by 20 degrees, the one between stands upright.
+TEST(RunPostures, SaysOfWhichPosturesANoteIs) {
+  const Folder folder;
+  folder.file("modes.toml", modes_at(520.0));
+  folder.file("upright.toml", modes_at(520.0));
+  folder.file("again.toml", modes_at(520.0));
+  const std::string posture = "[[postures]]\njoints_deg = [0, -12.8248533, 22.6817896, 0, ";
+  const auto cell = folder.file("cell.toml", arm + posture + "60.1430637, 90]\nmodes = \"modes.toml\"\n" + posture +
+                                                 "80.1430637, 90]\nmodes = \"upright.toml\"\n" + posture +
+                                                 "60.1430637, 45]\nmodes = \"again.toml\"\n");
+  const PosturesResult result = run_postures({.cell = cell, .cut = folder.file("cut.toml", cut)});
+  const std::string text =
+      "The cut's z is the base's z, from which the tool's axis stands off by 20 deg in this posture.";
+  for (const char* number : {"1", "3"}) {
+    EXPECT_EQ(std::ranges::count(result.cut.notes, "Posture " + std::string(number) + ": " + text), 1) << number;
+  }
+  EXPECT_EQ(std::ranges::count(result.cut.notes, text), 0);
 }
 
 TEST(RunPostures, RejectsWhatHasNoPosturesAndOtherCharts) {

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-#include <vector>
-
 #include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/system/append.hpp"
+#include "robomill/stability/files/lobes_schema.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -31,15 +29,7 @@ const io::Schema<PostureLimits>& posture_limits_table() {
            "gamma_deg", [](const PostureLimits& row) { return row.pose.gamma_rad; },
            "turn of the flange about the tool's axis"),
        key(
-           "limit_mm",
-           [](const PostureLimits& row) {
-             std::vector<std::optional<double>> out;
-             for (const Limit& limit : row.limits) {
-               const bool found = limit.status == Limit::Status::found;
-               out.push_back(found ? std::optional(limit.axial_depth_m) : std::nullopt);
-             }
-             return out;
-           },
+           "limit_mm", [](const PostureLimits& row) { return stability::limit_depths_of(row.limits); },
            "one a speed; none: no depth of the chart is unstable")
            .nullable()},
       io::Use::written);

@@ -77,8 +77,9 @@ void SpeedTracker::gather(std::span<const float> power, std::span<const float> f
     const float over = power[i] / (2.0F * floor[i] + 1e-30F);
     worth_[i] = 0.0F;
     if (over <= 1.0F) continue;
-    const float peak = std::ranges::max(
-        power.subspan(i - std::min(i, beside)).first(std::min(i, beside) + std::min(beside, power.size() - 1 - i) + 1));
+    const std::size_t from = i - std::min(i, beside);
+    const std::size_t to = std::min(i + beside + 1, power.size());
+    const float peak = std::ranges::max(power.subspan(from, to - from));
     worth_[i] = std::max(0.0F, std::min(1.0F, 0.5F * std::log10(over)) - flank * std::log10(peak / power[i]));
   }
   for (std::size_t i = 0; i < size; ++i) {

@@ -245,15 +245,7 @@ const Schema<MethodRow>& method_table() {
       "method", "what one method makes of the limits",
       {key("method", &MethodRow::method, method_names, "which"),
        key(
-           "limit_mm",
-           [](const MethodRow& row) {
-             std::vector<std::optional<double>> out;
-             for (const Limit& limit : row.limits) {
-               const bool found = limit.status == Limit::Status::found;
-               out.push_back(found ? std::optional(limit.axial_depth_m) : std::nullopt);
-             }
-             return out;
-           },
+           "limit_mm", [](const MethodRow& row) { return limit_depths_of(row.limits); },
            "one a speed; none: no depth is unstable; an empty list: the method rejects the cut")
            .nullable(),
        key("median_error", &MethodRow::median_error, "of |limit / that of the first method - 1|").nullable(),
@@ -266,6 +258,15 @@ const Schema<MethodRow>& method_table() {
 }
 
 }  // namespace
+
+std::vector<std::optional<double>> limit_depths_of(const std::vector<Limit>& limits) {
+  std::vector<std::optional<double>> out;
+  out.reserve(limits.size());
+  for (const Limit& limit : limits) {
+    out.push_back(limit.status == Limit::Status::found ? std::optional(limit.axial_depth_m) : std::nullopt);
+  }
+  return out;
+}
 
 io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
   return lobes_table().write(LobesView(result, uncertain, surface));

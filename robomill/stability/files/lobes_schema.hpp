@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+#include <vector>
+
 #include "robomill/io/schema.hpp"
 #include "robomill/stability/compare.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -25,6 +28,8 @@ struct LobesView {
                                     const SurfaceMap& surface = {});
 /// lobes.json of a sweep of another parameter than the axial depth.
 [[nodiscard]] const io::Schema<SweepResult>& sweep_table();
+/// The depths of limits; none where no depth is unstable.
+[[nodiscard]] std::vector<std::optional<double>> limit_depths_of(const std::vector<Limit>& limits);
 /// `robomill lobes --compare`
 [[nodiscard]] const io::Schema<MethodComparison>& comparison_table();
 

@@ -14,8 +14,18 @@ export interface LobesInput {
 }
 
 const dashes = ['dash', 'dot', 'dashdot', 'longdash'];
-export const speedAxis = 'Spindle speed (rpm)';
-export const depthAxis = 'Axial depth (mm)';
+const speedAxis = 'Spindle speed (rpm)';
+const depthAxis = 'Axial depth (mm)';
+
+/** Of several limits over the spindle speed. */
+export function limitsLayout(theme: Theme): Figure['layout'] {
+  return layout(theme, 460, {
+    hovermode: 'closest',
+    margin: { l: 56, r: 36, t: 40, b: 48 },
+    xaxis: axis(theme, speedAxis, { tickformat: ',d', hoverformat: '.0f' }),
+    yaxis: axis(theme, depthAxis, { rangemode: 'tozero' }),
+  });
+}
 
 /** The depth up to which a cut is stable at each speed: the limit, or all that was searched where there is none. */
 export function stableDepth(lobes: Lobes): number[] {

@@ -1,7 +1,7 @@
 import type { PosturesDocument } from '../documents';
 import { dashes } from './smooth';
-import { depthAxis, speedAxis } from './lobes';
-import { axis, layout, lines, seriesColour, thinSpace, type Figure, type Theme } from './theme';
+import { limitsLayout } from './lobes';
+import { lines, seriesColour, thinSpace, type Figure, type Theme } from './theme';
 
 /** The limit in each posture, over the spindle speed. */
 export function posturesFigure({ spindle_speed_rpm: speed, postures }: PosturesDocument, theme: Theme): Figure {
@@ -11,11 +11,6 @@ export function posturesFigure({ spindle_speed_rpm: speed, postures }: PosturesD
       const line = { color: seriesColour(theme, i), width: 1.8, dash: dashes[i % dashes.length] };
       return lines(name, speed, limit, line, `%{y:.4g}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra>${name}</extra>`, { connectgaps: false });
     }),
-    layout: layout(theme, 460, {
-      hovermode: 'closest',
-      margin: { l: 56, r: 36, t: 40, b: 48 },
-      xaxis: axis(theme, speedAxis, { tickformat: ',d', hoverformat: '.0f' }),
-      yaxis: axis(theme, depthAxis, { rangemode: 'tozero' }),
-    }),
+    layout: limitsLayout(theme),
   };
 }

@@ -1,8 +1,8 @@
 import type { ComparisonDocument, SweepDocument } from '../documents';
 import { sweptOf } from '../verb_views';
 import { dashes } from './smooth';
-import { depthAxis, pointTraces, radiusMap, speedAxis } from './lobes';
-import { axis, layout, lines, plain, seriesColour, thinSpace, type Figure, type Theme } from './theme';
+import { limitsLayout, pointTraces, radiusMap } from './lobes';
+import { lines, plain, seriesColour, thinSpace, type Figure, type Theme } from './theme';
 
 /** The spectral radius over speed and what is swept, with the points that were asked for. */
 export function sweepFigure(sweep: SweepDocument, theme: Theme): Figure {
@@ -22,11 +22,6 @@ export function comparisonFigure({ spindle_speed_rpm: speed, methods }: Comparis
       const more = { mode: 'lines+markers', connectgaps: false, marker: { size: i === 0 ? 5 : 4, color } };
       return lines(plain(method), speed, limit, line, `%{y:.4g}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra>${plain(method)}</extra>`, more);
     }),
-    layout: layout(theme, 460, {
-      hovermode: 'closest',
-      margin: { l: 56, r: 36, t: 40, b: 48 },
-      xaxis: axis(theme, speedAxis, { tickformat: ',d', hoverformat: '.0f' }),
-      yaxis: axis(theme, depthAxis, { rangemode: 'tozero' }),
-    }),
+    layout: limitsLayout(theme),
   };
 }
