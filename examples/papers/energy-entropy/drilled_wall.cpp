@@ -25,7 +25,7 @@ Eigen::MatrixXd drilled_wall(const Hole& hole, const Eigen::Ref<const Eigen::Mat
     const double at = (begin_s + since_s) * hole_rate_hz, rotation = speed * since_s;
     const auto row = static_cast<Eigen::Index>(at);
     const double share = at - static_cast<double>(row);
-    const Eigen::RowVector2d axis_m = (1.0 - share) * path_m.row(row) + share * path_m.row(row + 1);
+    const Eigen::RowVector2d axis_m = (1.0 - share) * path_m.row(row).head<2>() + share * path_m.row(row + 1).head<2>();
     const Eigen::Index column = std::min(turns - 1, static_cast<Eigen::Index>(rotation / turn));
     for (int lip = 0; lip < hole.cut.lips; ++lip) {
       const double standing = turn * lip / hole.cut.lips;

@@ -139,7 +139,7 @@ TEST(DrilledWall, HasTheWavesOfTheSwing) {
   Hole hole = turning_drill();
   hole.cut.lips = 1;
   hole.cut.runout_m = 2e-6;
-  Eigen::MatrixXd path_m(20480, 2);
+  Eigen::MatrixXd path_m = Eigen::MatrixXd::Ones(20480, 3);  // with the drill's own axis, as records have it
   const double begin_s = hole_contact_s + 0.5;
   for (Eigen::Index m = 0; m < 20480; ++m) {
     const double rotation = hole.cut.spindle_speed_rad_per_s * (static_cast<double>(m) / hole_rate_hz - begin_s);
