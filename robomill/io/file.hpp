@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/io/system/descriptor.hpp"
 
 namespace robomill::io {
@@ -17,14 +18,14 @@ namespace robomill::io {
 enum class Format { uff, csv, text, mat, json, toml, wav, lvm, tdms, unknown };
 
 /// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav, .lvm, .tdms; case does not matter.
-[[nodiscard]] Format format_of(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
 
 /// A path and, where it is a link, what it leads to, which may be missing, and so on.
 [[nodiscard]] std::vector<std::filesystem::path> links_of(const std::filesystem::path& path);
 /// The last of them: a link stays a link, and what it leads to is replaced.
 [[nodiscard]] std::filesystem::path behind_link(const std::filesystem::path& path);
 /// A device, a pipe or a socket, which cannot be renamed over; nothing of it remains half-written either.
-[[nodiscard]] bool is_special(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API bool is_special(const std::filesystem::path& path);
 /// A name that no file has beside another one.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path);
 /// Whether it looks like one.
@@ -33,7 +34,7 @@ enum class Format { uff, csv, text, mat, json, toml, wav, lvm, tdms, unknown };
 /// A file opened to be read.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is an output (OutputPlaces), is of
 ///     an unfinished FolderChange, or, while a Confinement lives, is a device or a pipe
-[[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API std::ifstream open_file(const std::filesystem::path& path);
 
 /// @throws InvalidInput as open_file
 void require_file(const std::filesystem::path& path);
@@ -41,8 +42,8 @@ void require_file(const std::filesystem::path& path);
 /// The whole content of a file.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is empty or holds more than
 /// max_bytes
-[[nodiscard]] std::string read_file(const std::filesystem::path& path,
-                                    std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
+[[nodiscard]] ROBOMILL_API std::string read_file(const std::filesystem::path& path,
+                                                 std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
 
 /// Makes a folder, and those above it, where they are missing.
 /// @throws InvalidInput if it cannot be made
@@ -50,7 +51,7 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Makes a file appear whole or not at all, by a PendingFile. A device or a pipe is written through.
 /// @throws InvalidInput if the place cannot be written
-void write_file(const std::filesystem::path& path, std::string_view content);
+ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Takes a regular file away, through a link the one it points to. Whether there was one.
 /// @throws InvalidInput if it cannot be removed
@@ -59,7 +60,7 @@ bool remove_file(const std::filesystem::path& path);
 /// A file that appears whole or not at all: it is written under a temporary name beside its place, made durable and
 /// renamed. It goes away unless committed. All that robomill writes into regular files, but for logs, is written here,
 /// what libraries write by their callbacks (write_at), so that no failure of the system is missed.
-class PendingFile {
+class ROBOMILL_API PendingFile {
  public:
   /// @throws InvalidInput if the folder is missing, path is one, a device, a pipe or an open file, or it cannot be
   ///     written
@@ -104,7 +105,7 @@ class PendingFile {
 
 /// A file written line by line that appears whole when it is closed, or not at all. A device or a pipe is written
 /// through.
-class LineFile {
+class ROBOMILL_API LineFile {
  public:
   /// @throws InvalidInput if the place cannot be written
   explicit LineFile(std::filesystem::path path);

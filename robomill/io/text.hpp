@@ -3,18 +3,20 @@
 #include <string>
 #include <string_view>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::io {
 
 /// The number that the whole of text spells, without regard to the locale: also "+1", "1.0D-03", "1e-020", "nan" and
 /// "inf". Too large a magnitude is ±inf, too small a one 0.
-[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+[[nodiscard]] ROBOMILL_API std::optional<double> parse_number(std::string_view text);
 
 /// The nearest number of 15 significant digits, so that 418.87902 rad/s come out as 4000 rpm and not as
 /// 4000.0000000000005.
 [[nodiscard]] double round_15(double number);
 
-[[nodiscard]] std::string_view trimmed(std::string_view text);
-[[nodiscard]] std::string lowered(std::string_view text);
+[[nodiscard]] ROBOMILL_API std::string_view trimmed(std::string_view text);
+[[nodiscard]] ROBOMILL_API std::string lowered(std::string_view text);
 
 /// Whether a column of this name is the time in seconds: "time_s", "t", "Time [s]", ….
 [[nodiscard]] bool is_time_column(std::string_view name);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/page/report.hpp"
@@ -52,7 +53,7 @@ enum class Document {
 };
 
 /// Before the work. @throws InvalidInput naming the file if this document is not written with its ending
-void require_output(Document document, const std::filesystem::path& path);
+ROBOMILL_API void require_output(Document document, const std::filesystem::path& path);
 
 /// A result as text: JSON, or another of the formats that require_output takes. FRFs and simulations as JSON alone.
 [[nodiscard]] std::string document(const FrfJobResult& result, io::Format format);

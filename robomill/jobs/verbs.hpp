@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/io/json.hpp"
@@ -76,7 +77,7 @@ struct VerbOption {
 };
 
 /// "--band".
-[[nodiscard]] std::string command_line_name(const VerbOption& option);
+[[nodiscard]] ROBOMILL_API std::string command_line_name(const VerbOption& option);
 
 /// The words of a table of names.
 template <class Value, std::size_t n>
@@ -92,7 +93,7 @@ enum class AskedBy { request, command_line };
 struct Verb;
 
 /// What is asked of a verb, its options checked.
-struct VerbJob {
+struct ROBOMILL_API VerbJob {
   const Verb& verb;
   AskedBy asked_by = AskedBy::request;
   std::vector<std::filesystem::path> inputs = {};
@@ -161,21 +162,21 @@ struct Verb {
 };
 
 /// Every verb that is a job, in the order of the page's buttons.
-[[nodiscard]] std::span<const Verb> verbs();
+[[nodiscard]] ROBOMILL_API std::span<const Verb> verbs();
 
 /// The job that an option makes of a verb of app/: "monitor --learn". Not among verbs().
-[[nodiscard]] Verb learn_verb();
+[[nodiscard]] ROBOMILL_API Verb learn_verb();
 
 /// Whether a verb needs an option beside its input.
-[[nodiscard]] bool is_required(const VerbOption& option, const std::filesystem::path& input);
+[[nodiscard]] ROBOMILL_API bool is_required(const VerbOption& option, const std::filesystem::path& input);
 
 /// @param input    the verb's first; empty: none
 /// @param options  by name; null ones are left out
 /// @param require_inside  throws InvalidInput if a path leads out of the folder; none: all may be read
 /// @returns the options, all of them checked by their rules
 /// @throws InvalidInput naming the option if one is unknown, missing or not what it takes
-[[nodiscard]] io::Json checked_options(const Verb& verb, AskedBy asked_by, const std::filesystem::path& input,
-                                       const io::Json& options,
-                                       const std::function<void(const std::string&)>& require_inside = {});
+[[nodiscard]] ROBOMILL_API io::Json checked_options(const Verb& verb, AskedBy asked_by,
+                                                    const std::filesystem::path& input, const io::Json& options,
+                                                    const std::function<void(const std::string&)>& require_inside = {});
 
 }  // namespace robomill::jobs

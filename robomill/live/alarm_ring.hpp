@@ -12,10 +12,12 @@
 #include <thread>
 #include <vector>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::live {
 
 /// Keeps the last seconds of all channels and writes them as WAV when an alarm comes, on a thread of its own.
-class AlarmRing {
+class ROBOMILL_API AlarmRing {
  public:
   struct Options {
     std::filesystem::path folder;  ///< made where it is missing

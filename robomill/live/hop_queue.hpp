@@ -8,6 +8,8 @@
 #include <mutex>
 #include <vector>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::live {
 
 /// Samples of one hop on their way from the input to the detector.
@@ -21,7 +23,7 @@ struct Hop {
 };
 
 /// A queue of bounded length between the thread that reads the input and the one that processes it.
-class HopQueue {
+class ROBOMILL_API HopQueue {
  public:
   explicit HopQueue(std::size_t capacity) : capacity_(capacity) {}
 

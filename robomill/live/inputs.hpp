@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/live/block_order.hpp"
 #include "robomill/live/health/arrival_rate.hpp"
@@ -23,7 +24,7 @@ namespace robomill::live {
 
 /// Reads a recording or a pipe on a thread of its own; closes the queue at the end. Reports rows that cannot be read,
 /// raw samples that are misaligned, and of what cannot wait a rate that is off.
-class SourceInput {
+class ROBOMILL_API SourceInput {
  public:
   /// @param can_wait  whether the source may be kept waiting; else hops are left out
   SourceInput(std::unique_ptr<io::SampleSource> source, const monitor::MonitorFile& file, HopQueue& queue,
@@ -47,7 +48,7 @@ class SourceInput {
 
 /// What a stream's messages go through on their way to the queue: rejected where they are no blocks of these channels
 /// at this rate, put in order, gaps filled, their rate compared with the clock. Used by one thread.
-class StreamIntake {
+class ROBOMILL_API StreamIntake {
  public:
   StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
   void message(std::span<const std::byte> payload);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::live {
 
 /// A fault of the stream, or another news of it: "lost-blocks", "broker-lost", …
@@ -17,7 +19,7 @@ struct Notice {
 
 /// Gathers notices from any thread. Of each kind one is given at once and then at most one a second, with how many it
 /// stands for: a flood of bad messages must not become a flood of events.
-class Notices {
+class ROBOMILL_API Notices {
  public:
   using Clock = std::chrono::steady_clock;
 

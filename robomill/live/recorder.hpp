@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/live/recorded_run.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
@@ -15,7 +16,7 @@ namespace robomill::live {
 /// Takes what a session is given and what it reports, and keeps what a page shows of it, in memory that does not grow
 /// with the recording: waves, score and spectrogram over runs that grow twice as long when there are too many, states,
 /// and alarms, those that repeat put together.
-class Recorder {
+class ROBOMILL_API Recorder {
  public:
   /// @param channels  their names, as many as the options say
   /// @throws InvalidInput if an option is out of range or the names do not fit

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "robomill/base/export.hpp"
 #include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
 #include "robomill/live/health/load.hpp"
@@ -56,7 +57,7 @@ struct SessionOptions {
 };
 
 /// Processes a stream: takes hops out of a queue until that is closed, and emits decisions and events.
-class Session {
+class ROBOMILL_API Session {
  public:
   /// @throws InvalidInput if the options of the file are out of range or the recording's folder cannot be made
   Session(const monitor::MonitorFile& file, SessionOptions options, SessionOutputs outputs);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "robomill/base/assumption.hpp"
+#include "robomill/base/export.hpp"
 
 /// Results of the other stages, as a page to look at and as the data of its plots: the stages' own JSON documents, as
 /// text, and what is recorded for the page alone. Every part may be left empty, and the page leaves its section out.
@@ -52,11 +53,11 @@ struct Report {
 /// The data of the page in shop units, keys with their unit, about six significant digits; numbers finite, "none" is
 /// null.
 /// @throws InvalidInput naming the member that is not its JSON document
-[[nodiscard]] std::string report_json(const Report& report);
+[[nodiscard]] ROBOMILL_API std::string report_json(const Report& report);
 
 /// One file that opens without a network: the page's script (web/), which makes tables and plots of the data inside.
 /// Where no script runs, and in a build without it (ROBOMILL_WEB=OFF), the page is the summary.
 /// @throws InvalidInput naming the member that is not its JSON document
-[[nodiscard]] std::string report_html(const Report& report);
+[[nodiscard]] ROBOMILL_API std::string report_html(const Report& report);
 
 }  // namespace robomill::page

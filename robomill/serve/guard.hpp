@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "robomill/base/export.hpp"
 #include "robomill/serve/http/server.hpp"
 
 // Method: robomill/serve/README.md, "Who may ask"
@@ -40,13 +41,13 @@ class Guard {
 /// that other machines reach is asked for by any name.
 /// @param given      the header
 /// @param listening  address of the server
-[[nodiscard]] bool is_own_host(std::string_view given, const std::string& listening, int port);
+[[nodiscard]] ROBOMILL_API bool is_own_host(std::string_view given, const std::string& listening, int port);
 
 /// The address that a server listens at: 127.0.0.1 of "localhost", otherwise as it is.
-[[nodiscard]] std::string host_address(const std::string& host);
+[[nodiscard]] ROBOMILL_API std::string host_address(const std::string& host);
 
 /// Whether an address reaches this machine alone: 127.0.0.0/8 or ::1.
-[[nodiscard]] bool is_loopback(const std::string& host);
+[[nodiscard]] ROBOMILL_API bool is_loopback(const std::string& host);
 
 /// Takes as long whatever the texts have in common.
 [[nodiscard]] bool equal_secrets(std::string_view given, std::string_view secret);

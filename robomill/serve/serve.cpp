@@ -18,6 +18,7 @@
 #include "robomill/serve/api.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/guard.hpp"
+#include "robomill/serve/process/own_library.hpp"
 #include "robomill/serve/process/worker_process.hpp"
 
 namespace robomill::serve {
@@ -51,6 +52,7 @@ std::optional<HttpResponse> page_file(const std::string& path) {
 
 WorkerOptions worker_of(const ServeOptions& options, const Folder& folder) {
   return {.command = options.worker,
+          .library = own_library(),
           .root = folder.root(),
           .memory_bytes = options.memory_bytes > 0 ? options.memory_bytes : io::machine_memory_bytes() / 2};
 }

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::io {
 
 /// Columns over time, as recorded.
@@ -53,7 +55,7 @@ struct RecordOptions {
                              std::vector<std::string>& notes);
 
 /// Whether a file is one that read_record reads, by its ending.
-[[nodiscard]] bool is_read_as_record(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API bool is_read_as_record(const std::filesystem::path& path);
 /// The endings of those files: ".csv", ".txt", …
 [[nodiscard]] std::vector<std::string_view> record_endings();
 /// ".csv, .txt, … and .wav"

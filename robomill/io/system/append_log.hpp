@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "robomill/base/export.hpp"
 #include "robomill/io/system/descriptor.hpp"
 
 // Method: robomill/io/README.md, "Logs"
@@ -21,7 +22,7 @@ namespace robomill::io {
 /// pipe is written through.
 ///
 /// Any thread may write; none waits for another one's write().
-class AppendLog {
+class ROBOMILL_API AppendLog {
  public:
   struct Options {
     std::size_t most_waiting = 4096;  ///< lines; more of them are lost: the oldest minor one, else the oldest

@@ -6,17 +6,19 @@
 #include <string>
 #include <string_view>
 
+#include "robomill/base/export.hpp"
+
 /// The system's calls on files, each finished (short counts, EINTR) and checked. They return 0 or errno, so that
 /// callbacks of libraries and signal-safe code can use them.
 namespace robomill::io {
 
 /// What the system calls an errno, "No space left on device".
-[[nodiscard]] std::string error_text(int error);
+[[nodiscard]] ROBOMILL_API std::string error_text(int error);
 /// Unless the error is 0. @throws InvalidInput that the file cannot be written, with the system's reason
-void require_success(const std::filesystem::path& path, int error);
+ROBOMILL_API void require_success(const std::filesystem::path& path, int error);
 
 /// An open file that closes itself.
-class Descriptor {
+class ROBOMILL_API Descriptor {
  public:
   Descriptor() = default;
   explicit Descriptor(int open) : open_(open) {}
@@ -37,7 +39,8 @@ class Descriptor {
 
 /// @param error  becomes 0 or errno
 /// @param mode   of a file that is made, less the process's umask
-[[nodiscard]] Descriptor open_descriptor(const char* path, int flags, int& error, unsigned mode = 0666) noexcept;
+[[nodiscard]] ROBOMILL_API Descriptor open_descriptor(const char* path, int flags, int& error,
+                                                      unsigned mode = 0666) noexcept;
 
 [[nodiscard]] int write_all(int to, std::string_view bytes) noexcept;
 /// @param count  becomes how many of them were written

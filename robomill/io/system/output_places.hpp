@@ -2,12 +2,14 @@
 #include <filesystem>
 #include <vector>
 
+#include "robomill/base/export.hpp"
+
 namespace robomill::io {
 
 /// The places that one job writes to. While it lives, the thread that made it reads no file that stands at one of them,
 /// or in one that is a folder, whatever link leads there: no output takes the place of an input. Temporary files
 /// (PendingFile) are no inputs.
-class OutputPlaces {
+class ROBOMILL_API OutputPlaces {
  public:
   /// @param places  files and folders, whether they are there or not; empty ones are left out
   /// @throws InvalidInput if two of them are one place

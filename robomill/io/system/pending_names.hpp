@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
 
+#include "robomill/base/export.hpp"
+
 /// The temporary files that there are, where a signal handler that ends the process can read them.
 namespace robomill::io {
 
@@ -14,6 +16,6 @@ void forget_pending(const std::filesystem::path& path) noexcept;
 [[nodiscard]] bool is_pending(const std::filesystem::path& path) noexcept;
 
 /// Removes all of them: async-signal-safe.
-void remove_pending_files() noexcept;
+ROBOMILL_API void remove_pending_files() noexcept;
 
 }  // namespace robomill::io

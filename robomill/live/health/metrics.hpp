@@ -5,12 +5,13 @@
 #include <iterator>
 #include <string>
 
+#include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
 
 namespace robomill::live {
 
 /// What /metrics reports; written by the monitor, read by the server.
-struct MetricValues {
+struct ROBOMILL_API MetricValues {
   std::atomic<int> state{3};  ///< 0 stable, 1 transition, 2 chatter, 3 blind, as before the first decision
   std::atomic<double> score{0.0}, threshold{0.0}, energy_entropy{0.0}, level{0.0};
   std::atomic<double> chatter_frequency_hz{0.0}, spindle_speed_rpm{0.0}, stream_s{0.0}, compute_s{0.0}, behind_s{0.0};

@@ -18,6 +18,7 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/serve/process/frames.hpp"
+#include "robomill/serve/process/own_library.hpp"
 #include "robomill/serve/process/work.hpp"
 
 namespace robomill::serve {
@@ -60,16 +61,17 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return out;
 }
 
-/// What a process is started with: one end of a pair of sockets, no input, nobody who reads what it prints, and nothing
-/// else of the server's: a client's connection would not end before it.
+/// What a process is started with: one end of a pair of sockets, the library that it runs from, no input, nobody who
+/// reads what it prints, and nothing else of the server's: a client's connection would not end before it.
 class SpawnActions {
  public:
-  explicit SpawnActions(int socket) {
+  SpawnActions(int socket, int library) : has_library_(library >= 0) {
     ::posix_spawn_file_actions_init(&actions_);
     ::posix_spawn_file_actions_adddup2(&actions_, socket, worker_socket);
     ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    ::posix_spawn_file_actions_addclosefrom_np(&actions_, worker_socket + 1);
+    if (has_library_) ::posix_spawn_file_actions_adddup2(&actions_, library, worker_library);
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, has_library_ ? worker_library + 1 : worker_library);
     ::posix_spawnattr_init(&attributes_);
     sigset_t none;
     ::sigemptyset(&none);
@@ -92,11 +94,13 @@ class SpawnActions {
   /// An error number; 0: it runs.
   int spawn(pid_t& process, std::vector<std::string> command) const {
     std::vector<std::string> variables = environment_of_worker();
+    if (has_library_) variables.push_back(preload_variable(worker_library));
     const std::vector<char*> words = pointers_to(command), environment = pointers_to(variables);
     return ::posix_spawn(&process, words.front(), &actions_, &attributes_, words.data(), environment.data());
   }
 
  private:
+  bool has_library_;
   posix_spawn_file_actions_t actions_ = {};
   posix_spawnattr_t attributes_ = {};
 };
@@ -110,7 +114,7 @@ WorkerProgram::WorkerProgram(const WorkerOptions& options) {
   };
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(errno);
   socket_ = ends[0];
-  const int error = SpawnActions(ends[1]).spawn(process_, options.command);
+  const int error = SpawnActions(ends[1], options.library).spawn(process_, options.command);
   ::close(ends[1]);
   if (error != 0) {
     ::close(socket_);

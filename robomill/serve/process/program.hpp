@@ -21,10 +21,11 @@ class WorkerEnded : public std::runtime_error {
 /// What a process that works for the server is, and what it may do.
 struct WorkerOptions {
   std::vector<std::string> command = {};  ///< a program that calls work_for_server(), and its arguments
-  std::filesystem::path root = {};        ///< the folder that is served
-  std::uint64_t memory_bytes = 0;         ///< that it may have for itself
-  bool connects = false;                  ///< to brokers
-  int last_id = 0;                        ///< of a spindle that is monitored; the next has the next one
+  int library = -1;                 ///< the shared library that it runs from, open (own_library()); -1: as installed
+  std::filesystem::path root = {};  ///< the folder that is served
+  std::uint64_t memory_bytes = 0;   ///< that it may have for itself
+  bool connects = false;            ///< to brokers
+  int last_id = 0;                  ///< of a spindle that is monitored; the next has the next one
 };
 
 /// Such a process while it runs.

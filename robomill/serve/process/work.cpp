@@ -44,6 +44,7 @@
 #include "robomill/serve/process/frames.hpp"
 #include "robomill/serve/process/job_process.hpp"
 #include "robomill/serve/process/monitor_service.hpp"
+#include "robomill/serve/process/own_library.hpp"
 #include "robomill/serve/process/work.hpp"
 #include "robomill/serve/program/live_program.hpp"
 #include "robomill/serve/serve.hpp"
@@ -270,6 +271,7 @@ int work_for_server(OpenStream open_stream) {
   socklen_t size = sizeof(type);
   if (::getsockopt(worker_socket, SOL_SOCKET, SO_TYPE, &type, &size) != 0) return 2;  // nobody who could ask
   std::signal(SIGTERM, on_end);
+  forget_preload(worker_library);
   try {
     FrameReader frames(longest_question);
     const Rights rights(next_frame(frames).body);
