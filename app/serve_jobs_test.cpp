@@ -36,14 +36,18 @@ using test::wait_for;
 /// A server of a folder with a lobes.toml that takes a moment and one that takes minutes.
 class ServeJobs : public ProgramTest {
  protected:
-  void start(const std::vector<std::string>& more = {}) {
+  /// @param before  of the command
+  void start(const std::vector<std::string>& more = {}, const std::vector<std::string>& before = {}) {
     fs::create_directories(folder_.at("served"));
     write("outside.toml", "[forty_two]\nforty_two = \"forty_two\"\n");
     write("served/lobes.toml", test::slot_lobes);
     std::string slow = test::slot_lobes;
     slow.replace(slow.find("[40, 30]"), 8, "[4000, 4000]");
     write("served/slow.toml", slow + "method = \"semi-discretization\"\noutput = \"map\"\n");
-    std::vector<std::string> words = {ROBOMILL_PROGRAM, "serve", folder_.at("served"), "--port", "0"};
+    std::vector<std::string> words = before;
+    for (const char* word : {ROBOMILL_PROGRAM, "serve"}) words.emplace_back(word);
+    for (const std::string& word : {folder_.at("served").string(), std::string("--port"), std::string("0")})
+      words.push_back(word);
     words.insert(words.end(), more.begin(), more.end());
     server_ = std::make_unique<test::Process>(words, folder_.at("out.txt"), folder_.at("err.txt"));
     ASSERT_TRUE(wait_for([this] { return port() > 0; })) << slurp(folder_.at("err.txt"));
@@ -131,6 +135,19 @@ TEST_F(ServeJobs, AProcessThatIsKilledIsAMessageOfItsJob) {
   EXPECT_EQ(next["state"], "done") << next;
   EXPECT_TRUE(fs::exists(folder_.at("served/out.json")));
   EXPECT_TRUE(wait_for([&] { return workers().empty(); }));  // a job without a program leaves none
+}
+
+// An upgrade replaces the library while a server runs: a new process of the server runs from the one that it began
+// with.
+TEST_F(ServeJobs, AnUpgradeChangesNothingOfAServerThatRuns) {
+  if (io::sanitized) GTEST_SKIP() << "AddressSanitizer insists on being loaded first";
+  const fs::path library = folder_.at(fs::path(ROBOMILL_LIBRARY).filename().string());
+  fs::copy_file(ROBOMILL_LIBRARY, library);
+  start({}, {"/usr/bin/env", "LD_LIBRARY_PATH=" + folder_.path().string()});
+  fs::remove(library);
+  write(library.filename().string(), "no library\n");
+  const json ended = end_of(run("lobes.toml", "out.json"));
+  EXPECT_EQ(ended["state"], "done") << ended;
 }
 
 TEST_F(ServeJobs, ACancelledJobEndsWithItsProcess) {
