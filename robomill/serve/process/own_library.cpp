@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 
+#include "robomill/io/system/descriptor.hpp"
 #include "robomill/io/system/sanitized.hpp"
 
 namespace robomill::serve {
@@ -21,13 +22,11 @@ int open_own_library() noexcept {
   const auto address = reinterpret_cast<const void*>(&open_own_library);
   if (::dladdr1(address, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0 || map == nullptr) return -1;
   if (*map->l_name == '\0') return -1;  // the program itself has no name in this list
-  const int first = ::open(map->l_name, O_RDONLY | O_CLOEXEC);
-  if (first < 0) return -1;
+  int error = 0;
+  const io::Descriptor file = io::open_descriptor(map->l_name, O_RDONLY | O_CLOEXEC, error);
   // Above the descriptors that a process starts with: what is copied to those must not replace it.
   constexpr int above_all_given = 16;
-  const int descriptor = ::fcntl(first, F_DUPFD_CLOEXEC, above_all_given);
-  ::close(first);
-  return descriptor;
+  return error != 0 ? -1 : ::fcntl(file.get(), F_DUPFD_CLOEXEC, above_all_given);
 }
 
 }  // namespace

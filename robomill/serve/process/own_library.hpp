@@ -5,7 +5,8 @@
 
 namespace robomill::serve {
 
-/// The shared library that this code runs from, kept open from the first call on; -1 where it is linked into the program.
+/// The shared library that this code runs from, kept open from the first call on; -1 where it is linked into the
+/// program.
 [[nodiscard]] int own_library() noexcept;
 
 /// The variable of a process that has own_library() open as `descriptor`: it runs from that file, also where an upgrade
