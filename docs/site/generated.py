@@ -1,0 +1,78 @@
+"""Pages that are derived: the command line from the program, the schemas from docs/schema, C++ from the public headers."""
+import json
+import re
+import subprocess
+
+from sources import ROOT
+
+
+def command_line(program):
+    """Every verb with its options, as the program prints them."""
+    def printed(*arguments):
+        return subprocess.run([program, *arguments], capture_output=True, text=True, check=True).stdout
+
+    table = printed("man", "markdown")
+    verbs = []
+    for words in re.findall(r"^\| `robomill (\w+)(?: (\w+)(?=[ `]))?", table, re.M):
+        # "cell check" is a verb of two words, "init job" a verb and its argument.
+        verb = " ".join(words) if words[1] and "Subcommands:" in printed(words[0], "--help") else words[0]
+        if verb not in verbs:
+            verbs.append(verb)
+    parts = ["# Command line\n",
+             "The program prints all of this itself: `robomill VERB --help`, `man robomill`. Exit codes: [README](../../../README.md#output-and-exit-codes).\n", table]
+    for verb in verbs:
+        parts.append(f"## robomill {verb}\n\n```text\n{printed(*verb.split(), '--help').strip()}\n```\n")
+    return "\n".join(parts)
+
+
+def schemas():
+    lines = ["# Schemas of documents\n", "JSON Schemas (draft 2020-12) of the documents in [Files](../../formats.md#schemas), which has the same keys in tables. `robomill schema NAME` prints one.\n",
+             "| document | what it is |", "|---|---|"]
+    for file in sorted((ROOT / "docs/schema").glob("*.schema.json")):
+        schema = json.loads(file.read_text(encoding="utf-8"))
+        lines.append(f"| [{file.name.removesuffix('.schema.json')}](../../schema/{file.name}) | {schema['description']} |")
+    return "\n".join(lines) + "\n"
+
+
+def public_headers():
+    """Of each stage its public headers, as its CMakeLists.txt names them."""
+    stages = {}
+    for file in sorted((ROOT / "robomill").glob("*/CMakeLists.txt")):
+        text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
+        names = re.search(r"PUBLIC_HEADERS\s+(.*?)\s+(?:[A-Z_]{4,}\b|\))", text, re.S)
+        if names:
+            stages[file.parent.name] = [f"robomill/{file.parent.name}/{name}" for name in names[1].split()]
+    return stages
+
+
+def stage_page(stage, headers):
+    parts = [f"# {stage}\n", f"Public headers of [robomill/{stage}](../../../../robomill/{stage}/README.md): its README has the methods, their accuracy and their cost.\n"]
+    for header in headers:
+        parts.append(f"## {header}\n\n```{{doxygenfile}} {header}\n```\n")
+    return "\n".join(parts)
+
+
+def doxyfile(headers, folder):
+    return f"""PROJECT_NAME = robomill
+INPUT = {' '.join(headers)}
+STRIP_FROM_PATH = {ROOT}
+FULL_PATH_NAMES = YES
+OUTPUT_DIRECTORY = {folder}
+GENERATE_HTML = NO
+GENERATE_LATEX = NO
+GENERATE_XML = YES
+XML_PROGRAMLISTING = NO
+EXTRACT_ALL = YES
+JAVADOC_AUTOBRIEF = YES
+MACRO_EXPANSION = YES
+EXPAND_ONLY_PREDEF = YES
+PREDEFINED = ROBOMILL_API=
+SORT_MEMBER_DOCS = NO
+AUTOLINK_SUPPORT = NO
+INCLUDE_GRAPH = NO
+INCLUDED_BY_GRAPH = NO
+QUIET = YES
+WARN_IF_UNDOCUMENTED = NO
+WARN_IF_INCOMPLETE_DOC = NO
+WARN_AS_ERROR = FAIL_ON_WARNINGS
+"""
