@@ -48,3 +48,13 @@ mathjax2_config = {
     "SVG": {"scale": 95},
     "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js"]},
 }
+
+
+def hide_empty_contents(app, page, template, context, doctree):
+    """A page without headings has no contents to list beside it; furo's script fails on an empty list."""
+    if 'href="#' not in (context.get("toc") or "").replace('href="#"', ""):
+        context["meta"] = {**(context.get("meta") or {}), "hide-toc": True}
+
+
+def setup(app):
+    app.connect("html-page-context", hide_empty_contents, priority=400)  # before furo

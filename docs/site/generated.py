@@ -2,6 +2,7 @@
 import json
 import re
 import subprocess
+from xml.etree import ElementTree
 
 from sources import ROOT
 
@@ -45,10 +46,46 @@ def public_headers():
     return stages
 
 
-def stage_page(stage, headers):
+class Declared:
+    """What each public header declares, by Doxygen's XML: its classes, then its functions, enumerations and constants."""
+
+    def __init__(self, xml):
+        self.classes, self.members = {}, {}
+        for file in sorted(xml.glob("*.xml")):
+            if file.name.startswith(("class", "struct")):
+                self.take_class(ElementTree.parse(file).find("compounddef"))
+            elif file.name.startswith("namespacerobomill"):
+                self.take_members(ElementTree.parse(file).find("compounddef"))
+
+    def take_class(self, definition):
+        place = definition.find("location")
+        item = (int(place.get("line")), definition.get("kind"), definition.findtext("compoundname"))
+        self.classes.setdefault(place.get("file"), []).append(item)
+
+    def take_members(self, namespace):
+        members = list(namespace.iter("memberdef"))
+        names = [member.findtext("name") for member in members]
+        for member, name in zip(members, names):
+            place = member.find("location")
+            signature = member.findtext("argsstring") if names.count(name) > 1 else ""
+            item = (int(place.get("line")), member.get("kind"), f"{namespace.findtext('compoundname')}::{name}{signature}")
+            self.members.setdefault(place.get("file"), []).append(item)
+
+    def of(self, header):
+        """Kinds and names. Classes within another are shown there."""
+        classes = sorted(self.classes.get(header, []))
+        names = {name for _, _, name in classes}
+        outer = [item for item in classes if item[2].rpartition("::")[0] not in names]
+        return [item[1:] for item in outer + sorted(self.members.get(header, []))]
+
+
+def stage_page(stage, headers, declared):
     parts = [f"# {stage}\n", f"Public headers of [robomill/{stage}](../../../../robomill/{stage}/README.md): its README has the methods, their accuracy and their cost.\n"]
     for header in headers:
-        parts.append(f"## {header}\n\n```{{doxygenfile}} {header}\n```\n")
+        parts.append(f"## {header.removeprefix(f'robomill/{stage}/')}\n\n`#include \"{header}\"`\n")
+        for kind, name in declared.of(header):
+            options = ":members:\n" if kind in ("class", "struct") else ""
+            parts.append(f"```{{doxygen{kind}}} {name}\n{options}```\n")
     return "\n".join(parts)
 
 
@@ -67,8 +104,10 @@ JAVADOC_AUTOBRIEF = YES
 MACRO_EXPANSION = YES
 EXPAND_ONLY_PREDEF = YES
 PREDEFINED = ROBOMILL_API=
+MAX_INITIALIZER_LINES = 0
 SORT_MEMBER_DOCS = NO
 AUTOLINK_SUPPORT = NO
+SHOW_INCLUDE_FILES = NO
 INCLUDE_GRAPH = NO
 INCLUDED_BY_GRAPH = NO
 QUIET = YES
