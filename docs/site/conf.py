@@ -14,6 +14,7 @@ extensions = ["myst_parser", "sphinx.ext.mathjax", "breathe"]
 source_suffix = {".md": "markdown"}
 root_doc = "index"
 highlight_language = "none"  # indented blocks are commands, formulas and output
+smartquotes = False  # -- is an option's beginning
 nitpicky = True
 # Types of the standard library, of Eigen and of private headers have no page, and Doxygen's names are not resolved as C++ does.
 nitpick_ignore_regex = [("cpp:.*", ".*")]
