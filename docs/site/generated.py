@@ -35,6 +35,13 @@ def schemas():
     return "\n".join(lines) + "\n"
 
 
+def missing_requests():
+    """Requests that serve's api.cpp answers and its README does not list."""
+    served = re.findall(r'\{"(\w+)", "(/api/[^"]*)", ', (ROOT / "robomill/serve/api.cpp").read_text(encoding="utf-8"))
+    listed = (ROOT / "robomill/serve/README.md").read_text(encoding="utf-8")
+    return [f"robomill/serve/README.md does not list {method} {path}" for method, path in served if f"`{method} {path}" not in listed]
+
+
 def public_headers():
     """Of each stage its public headers, as its CMakeLists.txt names them."""
     stages = {}
