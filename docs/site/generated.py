@@ -42,17 +42,6 @@ def missing_requests():
     return [f"robomill/serve/README.md does not list {method} {path}" for method, path in served if f"`{method} {path}" not in listed]
 
 
-def public_headers():
-    """Of each stage its public headers, as its CMakeLists.txt names them."""
-    stages = {}
-    for file in sorted((ROOT / "robomill").glob("*/CMakeLists.txt")):
-        text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
-        names = re.search(r"PUBLIC_HEADERS\s+(.*?)\s+(?:[A-Z_]{4,}\b|\))", text, re.S)
-        if names:
-            stages[file.parent.name] = [f"robomill/{file.parent.name}/{name}" for name in names[1].split()]
-    return stages
-
-
 class Declared:
     """What each public header declares, by Doxygen's XML: its classes, then its functions, enumerations and constants."""
 
