@@ -87,8 +87,8 @@ struct PostureChoice {
 /// turns from block to block. Where that does not go through a singularity of the wrist either, the axis is tilted
 /// there by max_axis_tilt_rad. The program is looked at in steps, finer near a singularity and wherever a joint moves
 /// far.
-/// @throws Interrupted; InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one
-/// that gets
+/// @throws Interrupted
+/// @throws InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one that gets
 ///     farthest ends, its line, joint and amount; or that the start cannot be taken
 [[nodiscard]] ROBOMILL_API PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
                                                         const PostureOptions& options = {},

@@ -71,7 +71,7 @@ struct LobesFile {
 
 /// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem; of a cell
 /// the modes of its posture. Without [uncertainty] these bring their own.
-/// @throws InvalidInput, also where an exponential window's damping is still in FRFs (without modes it stays
+/// @throws InvalidInput also where an exponential window's damping is still in FRFs (without modes it stays
 ///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file, Progress& progress = Progress::none());
 
