@@ -3,7 +3,6 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME robomill)
 set(CPACK_PACKAGE_VENDOR "robomill")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_CHECKSUM SHA256)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_THREADS 1)  # the same bytes from the same files
@@ -33,7 +32,7 @@ macro(robomill_package component name section line text)
   set(CPACK_DEBIAN_${component}_DESCRIPTION "${line}\nrobomill takes hammer hits, or a tool's drawing, and an NC program to spindle\nspeeds and depths of cut without chatter, forces, a smooth joint trajectory,\nand an alarm while cutting.\n\n${text}")
   set(CPACK_DEBIAN_${component}_PACKAGE_DEPENDS "${ARGN}")
   string(TOLOWER ${component} installed)
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/packaging/${name}/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/../${name} COMPONENT ${installed})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/packaging/${name}/ DESTINATION share/doc/${name} COMPONENT ${installed})
   install(FILES ${PROJECT_BINARY_DIR}/packaging/overrides/${name} DESTINATION share/lintian/overrides COMPONENT ${installed})
 endmacro()
 
@@ -48,7 +47,7 @@ if(ROBOMILL_PYTHON)
     "This package has the module robomill." "${library_package} ${of_this_version}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/python/postinst ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/../python3-robomill/examples COMPONENT python
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/examples/ DESTINATION share/doc/python3-robomill/examples COMPONENT python
     FILES_MATCHING PATTERN "*.py")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 endif()
@@ -56,7 +55,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packaging/triggers CONTENT "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/triggers)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_ARCHITECTURE amd64)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/../robomill/examples COMPONENT program
-  FILES_MATCHING PATTERN "*.toml" PATTERN "*.ngc" PATTERN "README.md" PATTERN "papers" EXCLUDE)
+# Those that need no program of their own; packaging/check runs them.
+foreach(example IN ITEMS ball-end-lobes ball-end-ur5e force-along-program joint-bar new-tool)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/${example} DESTINATION share/doc/robomill/examples COMPONENT program
+    FILES_MATCHING PATTERN "*.toml" PATTERN "*.ngc" PATTERN "README.md")
+endforeach()
 include(CPack)

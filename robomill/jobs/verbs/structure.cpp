@@ -142,7 +142,7 @@ Verb tools_verb() {
   return {.name = "couple --tools",
           .button = "Compare a list of tools",
           .purpose = "a table of tools in one holder to each one's modes, best speed and depth",
-          .example = "couple assembly.toml --tools tools.csv --lobes lobes.toml -o tools.csv",
+          .example = "couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv",
           .readme = "robomill/coupling/README.md",
           .input = assembly_input(),
           .output = "tools.json",
