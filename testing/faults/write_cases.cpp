@@ -1,5 +1,6 @@
 // The cases as folders with their inputs, for a robomill that is installed elsewhere: write_cases FOLDER
-// Prints a line for each: its folder, the arguments that make an input (or nothing) and those of the case, between tabs.
+// Prints a line for each: its folder, the arguments that make an input (or nothing) and those of the case, between
+// tabs.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
