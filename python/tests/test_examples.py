@@ -15,5 +15,11 @@ def test_runs(script, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+def test_readme_runs(capsys):
+    readme = (EXAMPLES[0].parents[2] / "README.md").read_text(encoding="utf-8")
+    exec(readme.split("```python\n")[1].split("```")[0], {})
+    assert capsys.readouterr().out.startswith("[(4000.0")
+
+
 def test_there_are_eight():
     assert len(EXAMPLES) == 8
