@@ -10,7 +10,7 @@ import shutil
 SITE = pathlib.Path(__file__).resolve().parent
 ROOT = SITE.parent.parent
 PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/*.md", "docs/theory/*.md", "robomill/*/README.md",
-         "examples/**/README.md", "data/README.md", "bench/README.md", "testing/*/README.md", "web/README.md", "docs/site/**/*.md"]
+         "examples/**/README.md", "data/README.md", "bench/README.md", "testing/*/README.md", "web/README.md", "packaging/README.md", "python/README.md", "python/examples/README.md", "docs/site/**/*.md"]
 # What a link to a folder without a README leads to.
 FOLDERS = {"docs/theory": "docs/site/theory/index.md", "docs/schema": "docs/site/reference/schemas.md"}
 GENERATED = {"docs/site/reference/schemas.md", "docs/site/reference/command-line.md"}
