@@ -82,7 +82,14 @@ py::object member_of(const T& value, py::handle owner) {
   }
 }
 
-/// What a function returned: numbers as arrays, which take over the memory.
+template <class T>
+struct Span : std::false_type {};
+template <class T>
+struct Span<std::span<const T>> : std::true_type {
+  using Copies = std::vector<T>;
+};
+
+/// What a function returned: numbers as arrays, which take over the memory; of what it only points to, copies.
 template <class T>
 py::object result_of(T&& value) {
   using Value = std::remove_cvref_t<T>;
@@ -91,6 +98,8 @@ py::object result_of(T&& value) {
     const Value& numbers = *kept;
     const py::capsule owner(kept.release(), [](void* given) { delete static_cast<Value*>(given); });
     return view_of(numbers.data(), numbers.size(), owner);
+  } else if constexpr (Span<Value>::value) {
+    return py::cast(typename Span<Value>::Copies(value.begin(), value.end()));
   } else {
     return py::cast(std::forward<T>(value));
   }

@@ -6,6 +6,7 @@
 import csv
 import pathlib
 import tempfile
+import tomllib
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from robomill import plot
 
 folder = pathlib.Path(tempfile.mkdtemp())
 (folder / "part.ngc").write_text("G21 G90 G94\nG64\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nG1 X0 Y3\nM30\n")
-(folder / "cell.toml").write_text("""
+cell = """
 [robot]
 base_origin_mm = [0, 0, 225.6]
 dh = [
@@ -46,8 +47,9 @@ max_jerk_mm_per_s3 = 10000
 max_angular_velocity_deg_per_s = 60
 max_angular_acceleration_deg_per_s2 = 600
 max_angular_jerk_deg_per_s3 = 12000
-""")
-limits = {"velocity": [2.1, 2.0, 1.9, 3.1, 3.0, 3.8], "acceleration": [3, 3, 3, 8, 8, 10], "jerk": [60, 60, 60, 200, 200, 250]}
+"""
+(folder / "cell.toml").write_text(cell)
+limits = {kind: tomllib.loads(cell)["robot"][f"joint_max_{kind}"] for kind in ("velocity", "acceleration", "jerk")}
 
 # %%
 smooth = robomill.smooth(folder / "part.ngc", cell=folder / "cell.toml", output=folder / "trajectory.csv")

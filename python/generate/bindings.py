@@ -254,8 +254,6 @@ class Writer:
                 f"WORK{{ {call}; }}); return py::make_tuple({names});"
         elif function.result == "void":
             run = f"WORK{{ {call}; }});"
-        elif reference:
-            run = f"return &WORK -> decltype(auto) {{ return {call}; }});"
         else:
             run = f"return result_of(WORK{{ return {call}; }}));"
         work = "with_progress(progress, [&]([[maybe_unused]] Progress& progress_) " if progress else "without_lock([&]() "
@@ -306,5 +304,3 @@ def write_bindings(library):
     writer = Writer(library)
     return writer.write(), writer.not_bound
 
-
-__all__ = ["write_bindings", "Function"]

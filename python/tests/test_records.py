@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import robomill
-from robomill import coupling, cutting, modal, stability, units
+from robomill import coupling, cutting, modal, monitor, stability, units
 
 
 def frf(n=5):
@@ -69,8 +69,7 @@ def test_texts_are_short():
 
 def test_errors_have_their_parts():
     with pytest.raises(robomill.InvalidInput) as caught:
-        coupling.Segment(length_m=-1.0).validate() if hasattr(coupling.Segment, "validate") else coupling.Assembly(
-            tool=[coupling.Segment(length_m=-1.0)]).validate()
+        coupling.Assembly(tool=[coupling.Segment(length_m=-1.0)]).validate()
     assert caught.value.number == -1.0 and caught.value.unit == "m" and "length_m" in caught.value.field
     assert isinstance(caught.value, ValueError)
 
@@ -78,6 +77,12 @@ def test_errors_have_their_parts():
 def test_parameters_are_keywords():
     with pytest.raises(TypeError):
         modal.parse_frf_name("xx")
+
+
+def test_what_the_library_points_to_is_copied():
+    words = monitor.quantity_words()
+    assert isinstance(words, list) and len(words) > 20
+    assert words[0].quantity.name == "line_share"
 
 
 def test_units_are_constants():
