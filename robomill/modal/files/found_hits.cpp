@@ -166,6 +166,7 @@ void add_sets(const std::vector<fs::path>& alone, bool of_any_name, const fs::pa
       reason = reason_of(error);
     }
     std::vector<std::string> names;
+    names.reserve(set.size());
     for (const fs::path& path : set) names.push_back(relative_name(path, folder));
     if (hit) {
       hit->files = std::move(names);

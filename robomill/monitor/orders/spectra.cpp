@@ -37,7 +37,7 @@ std::vector<float> low_pass(std::size_t factor) {
 std::size_t smooth(std::size_t n) {
   for (n += n % 2;; n += 2) {
     std::size_t rest = n;
-    for (const std::size_t prime : {2, 3, 5}) {
+    for (const std::size_t prime : {2U, 3U, 5U}) {
       while (rest % prime == 0) rest /= prime;
     }
     if (rest == 1) return n;

@@ -180,7 +180,7 @@ std::vector<std::filesystem::path> TapSettings::in_order(std::vector<std::filesy
     };
     return std::ranges::find_if(named, same) - named.begin();
   };
-  std::ranges::stable_partition(files, modal::is_named_force);
+  std::stable_partition(files.begin(), files.end(), modal::is_named_force);
   std::ranges::stable_sort(files, {}, place);
   return files;
 }
