@@ -198,8 +198,8 @@ TEST_P(RandomCuts, AreTheSameInEveryVerb) {
     monitor.options.spindle_speed_rad_per_s = op.spindle_speed_rad_per_s;
     const live::AdviceBasis basis = read_advice_basis(monitor, Progress::none());
     ASSERT_TRUE(basis.lobes) << seed;
-    for (std::size_t i = 0; i < basis.lobes->limit.size(); ++i) {
-      const stability::Limit &advised = basis.lobes->limit[i], &planned = plan.lobes.limit[i];
+    for (std::size_t k = 0; k < basis.lobes->limit.size(); ++k) {
+      const stability::Limit &advised = basis.lobes->limit[k], &planned = plan.lobes.limit[k];
       ASSERT_EQ(advised.status, planned.status) << seed;
       expect_within(advised.axial_depth_m, planned.axial_depth_m, seed + ": the monitor's limit");
       expect_within(advised.chatter_frequency_hz, planned.chatter_frequency_hz, seed + ": its chatter frequency");
