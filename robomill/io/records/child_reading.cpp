@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t most_memory = std::size_t{64} << 20;
 
 /// To read a file in; a second more a megabyte.
-constexpr std::chrono::seconds shortest_time(30);
+constexpr std::chrono::seconds shortest_time(10);
 
 /// How the child's answer begins.
 constexpr char answered = '+', rejected = '-';

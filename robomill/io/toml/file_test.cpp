@@ -264,5 +264,18 @@ TEST(TomlFiles, SurvivesMutations) {
   }
 }
 
+// toml++ lets the compiler assume that a letter beyond ASCII comes nowhere where a blank may stand.
+TEST(TomlFiles, LettersBeyondAsciiAreNoBlanks) {
+  const auto utf8 = [](unsigned letter) {
+    return std::string({static_cast<char>(0xC0 | letter >> 6U), static_cast<char>(0x80 | (letter & 0x3FU))});
+  };
+  for (unsigned letter = 0xA1; letter < 0x49A; ++letter) {
+    const std::string is_key = rejection([&] { const TomlFile file({"a.toml", utf8(letter) + " = 1\n"}); });
+    EXPECT_NE(is_key.find("a.toml:1: "), std::string::npos) << letter << ": " << is_key;
+    const TomlFile comment({"a.toml", "a = 1 #" + utf8(letter) + "\n#" + utf8(letter) + "\n"});
+    EXPECT_TRUE(comment.has("a")) << letter;
+  }
+}
+
 }  // namespace toml_file_test
 }  // namespace robomill::io
