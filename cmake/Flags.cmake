@@ -18,6 +18,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A tenth of the compile time is the collection of what GCC no longer needs, unless it may take 2 GB first.
   target_compile_options(robomill_common_flags INTERFACE "SHELL:--param ggc-min-expand=400" "SHELL:--param ggc-min-heapsize=2000000")
 endif()
+# Clang has no code of its own for atomic values of more than a word.
+target_link_libraries(robomill_common_flags INTERFACE $<$<CXX_COMPILER_ID:Clang>:atomic>)
 if(ROBOMILL_UNITY)
   # Sources that are compiled together see each other's unnamed namespaces.
   target_compile_options(robomill_common_flags INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)

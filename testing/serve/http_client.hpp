@@ -65,6 +65,8 @@ class HttpConnection {
     }
     return true;
   }
+  /// Sends nothing more; what the other end still sends can be read.
+  void send_end() { ::shutdown(socket_, SHUT_WR); }
   /// Reads until `wanted` stands in what came, the end, or a time; true where it does.
   bool wait_for(std::string_view wanted, double seconds = 20.0) {
     const Clock::time_point end = after(seconds);
