@@ -1,4 +1,4 @@
-# The packages of Debian: a component of cmake/package.cmake each. packaging/build makes them.
+# The packages of Debian: a component of cmake/package.cmake each. tools/package makes them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME robomill)
 set(CPACK_PACKAGE_VENDOR "robomill")

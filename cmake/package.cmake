@@ -55,7 +55,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/robomillConfigVersi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomillConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/robomillConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/robomill COMPONENT development)
 
-# What a package of Debian has in its place is made by packaging/build.
+# What a package of Debian has in its place is made by tools/package.
 if(NOT ROBOMILL_DEBIAN)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 endif()
