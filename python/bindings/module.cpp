@@ -2,10 +2,10 @@
 
 #include <sstream>
 
+#include "python/bindings/error.hpp"
 #include "python/bindings/stage.hpp"
 #include "python/bindings/stages.hpp"
 #include "python/bindings/verbs.hpp"
-#include "robomill/base/error.hpp"
 #include "robomill/io/toml_source.hpp"
 #include "robomill/version.hpp"
 
@@ -23,31 +23,6 @@ py::module_ module_of(const py::module_& root, const std::string& name) {
 }
 
 namespace {
-
-/// A ValueError with the parts of the message as attributes: where, field, number, value, unit, rule, hint.
-void define_errors(py::module_& root) {
-  static py::handle invalid_input;
-  invalid_input = py::exception<InvalidInput>(root, "InvalidInput", PyExc_ValueError).release();
-  invalid_input.attr("__doc__") = "Bad input: where, which field, its value and unit, the rule, the likely cause.";
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const InvalidInput& error) {
-      const InvalidInput::Parts& parts = error.parts();
-      const py::object made = invalid_input(error.what());
-      made.attr("where") = parts.where;
-      made.attr("field") = parts.field;
-      made.attr("number") = parts.number;
-      made.attr("value") = parts.value;
-      made.attr("unit") = parts.unit;
-      made.attr("rule") = parts.rule;
-      made.attr("hint") = parts.hint;
-      PyErr_SetObject(invalid_input.ptr(), made.ptr());
-    } catch (const Interrupted& stopped) {
-      PyErr_SetString(PyExc_KeyboardInterrupt, stopped.what());
-    }
-  });
-}
 
 /// A TOML document: a path alone is one.
 void define_toml_source() {

@@ -30,6 +30,19 @@ std::string short_text(const py::object& self, const py::tuple& names) {
   return text + ")";
 }
 
+/// For inspect.signature, which editors complete keywords from.
+py::object signature_of(const py::object& type) {
+  if (!py::hasattr(type, "replace")) return py::none();  // the library makes them
+  const py::module_ inspect = py::module_::import("inspect");
+  const py::object parameter = inspect.attr("Parameter");
+  py::list parameters;
+  for (const py::handle name : type.attr("_fields")) {
+    parameters.append(parameter(name, parameter.attr("KEYWORD_ONLY"),
+                                py::arg("default") = py::reinterpret_borrow<py::object>(Py_Ellipsis)));
+  }
+  return inspect.attr("Signature")(parameters);
+}
+
 [[noreturn]] void no_such_member(const py::handle& name, const std::vector<Access>& all, const std::string& of) {
   py::list known;
   for (const Access& one : all) known.append(one.name);
@@ -87,6 +100,9 @@ void Members::define_text(const py::object& type) const {
   py::tuple names(all_.size());
   for (std::size_t i = 0; i < all_.size(); ++i) names[i] = all_[i].name;
   type.attr("_fields") = names;
+  // Of the class, made when somebody asks.
+  const py::handle of_class(reinterpret_cast<PyObject*>(py::detail::get_internals().static_property_type));
+  type.attr("__signature__") = of_class(py::cpp_function(signature_of), py::none(), py::none(), "");
   type.attr("__repr__") =
       py::cpp_function([names](const py::object& self) { return short_text(self, names); }, py::is_method(type));
 }

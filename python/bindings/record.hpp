@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "python/bindings/call.hpp"
+#include "python/bindings/error.hpp"
 
 // How structs of the library are Python's: frozen, made of keywords, their arrays NumPy's without a copy.
 
@@ -59,6 +60,13 @@ template <class T>
 struct Shared<std::shared_ptr<const T>> : std::true_type {
   using Value = T;
 };
+/// What the library alone makes: it is read through the object that holds it.
+template <class T>
+struct Held : std::false_type {};
+template <class T>
+struct Held<std::unique_ptr<T>> : std::true_type {};
+template <class T>
+struct Held<std::shared_ptr<T>> : std::bool_constant<!std::is_const_v<T>> {};
 
 /// An array of an object's memory, which it keeps alive, and which nobody can write to.
 template <class T>
@@ -75,7 +83,7 @@ py::object member_of(const T& value, py::handle owner) {
     return view_of(value.data(), value.size(), owner);
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
     return py::cast(value.matrix(), py::return_value_policy::reference_internal, owner);
-  } else if constexpr (Shared<T>::value) {
+  } else if constexpr (Shared<T>::value || Held<T>::value) {
     return value ? py::cast(*value, py::return_value_policy::reference_internal, owner) : py::none();
   } else {
     return py::cast(value, py::return_value_policy::reference_internal, owner);
@@ -164,7 +172,8 @@ class Record {
                   .get = get_member<Member>};
     // A pointer or a view would outlive the text that it is made of.
     constexpr bool refers = std::is_pointer_v<Member> || std::is_same_v<Member, std::string_view>;
-    if constexpr (!refers && std::is_copy_assignable_v<Member> && std::is_move_constructible_v<Member>) {
+    if constexpr (!refers && !Held<Member>::value && std::is_copy_assignable_v<Member> &&
+                  std::is_move_constructible_v<Member>) {
       access.set = set_member<Member>;
     }
     members_->add(class_, std::move(access), doc);

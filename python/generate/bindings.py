@@ -3,66 +3,9 @@
 What cannot be bound is listed with its reason; python/not_bound.csv holds the list, and the build fails where it differs."""
 import re
 
+from generate.docs import Docs
 from generate.headers import Function, python_name
-
-NUMBERS = r"(?:double|float|int|unsigned int|long|unsigned long|long long|unsigned long long|short|unsigned short|unsigned char|signed char)"
-#: Types that a value of Python becomes, or that become one, beside the library's own structs and enums.
-PLAIN = re.compile(rf"(?:bool|void|{NUMBERS}|std::string|std::string_view|const char \*|std::filesystem::path|std::complex<(?:double|float)>|std::byte)$")
-EIGEN = re.compile(r"Eigen::(?:Matrix|Transform|Ref|Quaternion|Array|Map)<")
-
-
-def without_reference(name):
-    return re.sub(r"^const (?!char \*)|\s*&&?$", "", name).strip()
-
-
-def arguments_of(name):
-    """The template's name and its arguments: "std::map", ["std::string", "int"]."""
-    found = re.match(r"([\w:]+)<(.*)>$", name)
-    if not found:
-        return name, []
-    parts, depth, part = [], 0, ""
-    for letter in found.group(2):
-        depth += letter in "<(" 
-        depth -= letter in ">)"
-        if letter == "," and depth == 0:
-            parts.append(part.strip())
-            part = ""
-        else:
-            part += letter
-    return found.group(1), [*parts, part.strip()]
-
-
-class Types:
-    """Which types can be bound."""
-
-    def __init__(self, library):
-        self.enums = {one.qualified for one in library.enums}
-        self.structs = {one.qualified: one for one in library.structs}
-
-    def is_known(self, name):
-        name = without_reference(name)
-        if PLAIN.match(name) or name in self.enums or name in self.structs or EIGEN.match(name):
-            return True
-        template, inner = arguments_of(name)
-        if template in ("std::vector", "std::optional", "std::array", "std::span", "std::pair", "std::tuple", "std::map", "std::set", "std::variant",
-                        "std::unique_ptr"):
-            return all(self.is_known(one) or re.fullmatch(r"\d+(?:UL)?|std::less<.*>|std::default_delete<.*>", one) for one in inner)
-        if template == "std::shared_ptr":  # of what does not change
-            return inner[0].startswith("const ") and self.is_known(inner[0])
-        if template == "std::function":
-            found = re.match(r"(.*?)\s*\((.*)\)$", inner[0]) if len(inner) == 1 else re.match(r"(.*?)\s*\((.*)\)$", ", ".join(inner))
-            return bool(found) and self.is_known(found.group(1)) and all(self.is_known(one) for one in arguments_of(f"x<{found.group(2)}>")[1] if one)
-        return False
-
-    def is_struct(self, name):
-        return without_reference(name) in self.structs
-
-    def is_parameter(self, name):
-        """A pointer to a struct that is only read is one too: None is null."""
-        return self.is_known(name[6:-2]) if self.is_optional(name) else self.is_known(name) and not ("*" in name and "char" not in name)
-
-    def is_optional(self, name):
-        return name.startswith("const ") and name.endswith(" *") and name[6:-2] in self.structs
+from generate.kinds import NUMBERS, Types, arguments_of, is_output, without_reference
 
 
 def literal(text):
@@ -85,6 +28,7 @@ class Writer:
     def __init__(self, library):
         self.library = library
         self.types = Types(library)
+        self.docs = Docs(library)
         self.not_bound = []  # (what, reason)
         self.sources = {}  # stage -> {"types": [...], "members": [...]}
 
@@ -144,19 +88,21 @@ class Writer:
             self.skip(struct.qualified, f"its base {struct.bases[0]} is none of the library's")
         name = variable(struct.qualified)
         if struct.is_class:
-            source["declare"].append((False, f'  declare<{struct.qualified}{bases}>({self.scope(struct.owner)}, "{struct.name}", {literal(struct.doc)});'))
             lines = [f"  auto {name} = class_of<{struct.qualified}{bases}>();"]
-            lines += self.constructors(struct, name)
+            made = self.constructors(struct, name)
+            doc = self.docs.klass(struct, self.constructed(struct))
+            source["declare"].append((False, f'  declare<{struct.qualified}{bases}>({self.scope(struct.owner)}, "{struct.name}", {literal(doc)});'))
+            lines += made
         else:
-            source["declare"].append((False, f'  declare_record<{struct.qualified}{bases}>({self.scope(struct.owner)}, "{struct.name}", {literal(struct.doc)});'))
             lines = [f"  Record<{struct.qualified}{bases}>& {name}_record = record_of<{struct.qualified}{bases}>();", f"  auto& {name} = {name}_record.type();"]
-            inherited = [field for base in struct.bases if base in self.types.structs for field in self.types.structs[base].fields]
-            for field in [*inherited, *struct.fields]:
-                if not self.types.is_known(field.type) or field.type.endswith(("&", "*")) and "char" not in field.type or re.match(r"std::(unique_ptr|span)<", field.type):
-                    self.skip(f"{struct.qualified}::{field.name}", field.type)
-                    continue
-                lines.append(f'  {name}_record.field("{python_name(field.name)}", &{struct.qualified}::{field.name}, {literal(field.doc)});')
+            fields = self.fields(struct)
+            for field in fields:
+                lines.append(self.member(struct, name, field))
+            lines += self.referring(struct, name)
             lines.append(f"  {name}_record.done();")
+            doc = self.docs.struct_signature(struct, fields) if not self.docs.made_by_library(struct) and struct.qualified != "robomill::io::TomlSource" else ""
+            doc += self.docs.struct(struct, fields)
+            source["declare"].append((False, f'  declare_record<{struct.qualified}{bases}>({self.scope(struct.owner)}, "{struct.name}", {literal(doc)});'))
         for method in struct.methods:
             text = self.call(method, struct)
             if text:
@@ -164,8 +110,48 @@ class Writer:
                 lines.append(f'  {name}.{kind}("{python_name(method.name)}", {text});')
         source["fields"].append("\n".join(["  {", *lines, "  }"]))
 
+    def fields(self, struct):
+        """The members that Python has, those of bases first."""
+        inherited = [field for base in struct.bases if base in self.types.structs for field in self.types.structs[base].fields]
+        references, out = self.types.refers(struct), []
+        for field in [*inherited, *struct.fields]:
+            if field not in references and (not self.types.is_known(field.type) or field.type.endswith(("&", "*")) and "char" not in field.type or
+                                            field.type.startswith("std::span<")):
+                self.skip(f"{struct.qualified}::{field.name}", field.type)
+            else:
+                out.append(field)
+        return out
+
+    @staticmethod
+    def member(struct, name, field):
+        if field.type.endswith("&"):
+            return f'  {name}.def_property_readonly("{field.name}", [](const {struct.qualified}& self) -> {field.type} {{ return self.{field.name}; }}, ' \
+                f'{literal(field.doc)});'
+        return f'  {name}_record.field("{python_name(field.name)}", &{struct.qualified}::{field.name}, {literal(field.doc)});'
+
+    def referring(self, struct, name):
+        """The constructor of a struct that refers to others, which it keeps alive."""
+        references = self.types.refers(struct)
+        if not references:
+            return []
+        head = ", ".join(f"{one.type} {one.name}" for one in struct.fields)
+        values = ", ".join(one.name if one in references else f"std::move({one.name})" for one in struct.fields)
+        names = "".join(f', py::arg("{python_name(one.name)}")' if one in references else f', py::arg_v("{python_name(one.name)}", {one.type}{{}}, "...")'
+                        for one in struct.fields)
+        keep = "".join(f", py::keep_alive<1, {i + 2}>()" for i, one in enumerate(struct.fields) if one in references)
+        return [f"  {name}.def(py::init([]({head}) {{ return std::unique_ptr<{struct.qualified}>(new {struct.qualified}{{{values}}}); }}), "
+                f"py::kw_only(){names}{keep});"]
+
+    def constructed(self, struct):
+        """Its constructors that Python has."""
+        if struct.is_abstract or f"{struct.qualified}::{struct.name}" in {name for name, _ in self.not_bound}:
+            return []
+        return struct.constructors if struct.has_constructor else [Function(struct.name, struct.qualified, "", [], "")]
+
     def constructors(self, struct, name):
         lines = []
+        if not struct.has_constructor and not struct.is_abstract:
+            lines.append(f"  {name}.def(py::init<>());")
         for one in struct.constructors if not struct.is_abstract else []:
             if any(without_reference(parameter.type) == "robomill::Progress" for parameter in one.parameters):
                 text = self.call(Function(struct.name, struct.owner, struct.qualified, one.parameters, one.doc))
@@ -178,7 +164,7 @@ class Writer:
                 continue
             types = ", ".join(parameter.type for parameter in one.parameters)
             keep = "".join(f", py::keep_alive<1, {i + 2}>()" for i, parameter in enumerate(one.parameters) if self.types.is_struct(parameter.type))
-            lines.append(f"  {name}.def(py::init<{types}>(){self.names(one, one.parameters)}{keep}, {literal(one.doc)});")
+            lines.append(f"  {name}.def(py::init<{types}>(){self.names(one, one.parameters)}{keep}, {literal(self.docs.constructor_signature(struct, one))});")
         return lines
 
     @staticmethod
@@ -212,9 +198,27 @@ class Writer:
             return f"{plain}{value}"
         return value
 
+    def listing(self, function, struct):
+        """Of a function that writes into room of the caller: a list of what it wrote."""
+        given, inner = function.parameters[:-2], function.parameters[-2].type.removesuffix(" *")
+        head = ", ".join([f"{'const ' if function.is_const else ''}{struct.qualified}& self", *(f"{one.type} {one.name}" for one in given), "int room"])
+        passed = ", ".join([*(one.name for one in given), "out.data()", "room"])
+        return f"[]({head}) {{ std::vector<{inner}> out(static_cast<std::size_t>(std::max(room, 0))); " \
+            f"out.resize(static_cast<std::size_t>(without_lock([&]() {{ return self.{function.name}({passed}); }}))); return py::cast(out); }}" \
+            f"{self.names(function, [*given, function.parameters[-1]])}, {literal(self.documentation(function, struct))}"
+
+    def documentation(self, function, struct=None):
+        """With a signature for inspect.signature in front, where a name means one function."""
+        group = struct.methods if struct is not None else self.library.functions
+        alone = sum(1 for one in group if one.name == function.name and one.owner == function.owner) == 1
+        head = self.docs.function_signature(function, struct is not None and not function.is_static) if alone else ""
+        return head + self.docs.function(function)
+
     def call(self, function, struct=None):
         """The lambda that calls a function, its names and its documentation; None where it cannot be bound."""
         what = f"{function.owner}::{function.name}"
+        if self.types.is_listing(function):
+            return self.listing(function, struct)
         given, passed, returned, progress = [], [], [], None
         for i, parameter in enumerate(function.parameters):
             plain = without_reference(parameter.type)
@@ -223,7 +227,7 @@ class Writer:
                 passed.append("progress_")
             elif parameter.default == "nullptr" and not self.types.is_parameter(parameter.type):
                 passed.append("nullptr")
-            elif parameter.type.endswith("&") and not parameter.type.startswith("const ") and plain.startswith("std::vector<"):
+            elif is_output(parameter):
                 returned.append((parameter.name, plain))
                 passed.append(f"{parameter.name}_")
             elif not self.types.is_parameter(parameter.type):
@@ -232,7 +236,7 @@ class Writer:
             else:
                 given.append(parameter)
                 passed.append(f"std::move({parameter.name})" if not parameter.type.endswith("&") else parameter.name)
-        if not self.types.is_parameter(function.result):
+        if not self.types.is_result(function.result):
             self.skip(what, function.result)
             return None
         is_method = struct is not None and not function.is_static
@@ -246,8 +250,9 @@ class Writer:
                   for i, one in enumerate(passed)]
         callee = f"self.{function.name}" if is_method else f"{function.owner}::{function.name}"
         call = f"{callee}({', '.join(passed)})"
-        outputs = "".join(f" {kind} {name}_;" for name, kind in returned)
-        reference = function.result.endswith("&") or self.types.is_optional(function.result)
+        nothing = {True: "{0}::Constant(std::numeric_limits<double>::quiet_NaN())", False: "{0}()"}
+        outputs = "".join(f" {kind} {name}_ = {nothing[kind.startswith('Eigen::')].format(kind)};" for name, kind in returned)
+        reference = function.result.endswith(("&", "*")) and "char" not in function.result
         if returned:
             names = ", ".join(f"result_of(std::move({name}_))" for name, _ in returned)
             run = f"auto done = WORK{{ return {call}; }}); return py::make_tuple(result_of(std::move(done)), {names});" if function.result != "void" else \
@@ -264,9 +269,11 @@ class Writer:
             run, policy = run.replace("WORK", work), ""
         text = f"[]({', '.join(head)}) {{{outputs} {run} }}"
         names = self.names(function, given)
+        if without_reference(function.result) in self.types.structs and self.types.refers(self.types.structs[without_reference(function.result)]):
+            policy += "".join(f", py::keep_alive<0, {i + 1 + is_method}>()" for i, one in enumerate(given) if self.types.is_struct(one.type))
         if progress:
             names = (names or ", py::kw_only()") + ', py::arg("progress") = py::none()'
-        return f"{text}{policy}{names}, {literal(function.doc)}"
+        return f"{text}{policy}{names}, {literal(self.documentation(function, struct))}"
 
     @staticmethod
     def span_of(name):

@@ -40,6 +40,7 @@ class Field:
     name: str
     type: str
     doc: str
+    default: str = None
 
 
 @dataclasses.dataclass
@@ -66,6 +67,7 @@ class Struct:
     constructors: list = dataclasses.field(default_factory=list)
     is_class: bool = False
     is_abstract: bool = False
+    has_constructor: bool = False  # a declared one, whoever may call it
 
     @property
     def qualified(self):
@@ -113,9 +115,14 @@ def type_of(clang_type):
 
 def default_of(cursor):
     tokens = [token.spelling for token in cursor.get_tokens()]
-    if "=" not in tokens:
-        return None
-    return " ".join(tokens[tokens.index("=") + 1:])
+    depth = 0
+    for i in reversed(range(len(tokens))):  # of several declarators the last is meant
+        depth += {")": 1, "}": 1, ">": 1, ">>": 2, "(": -1, "{": -1, "<": -1}.get(tokens[i], 0)
+        if tokens[i] == "=" and depth == 0:
+            return " ".join(tokens[i + 1:])
+        if tokens[i] == "," and depth == 0:
+            return None
+    return None
 
 
 def parameters_of(cursor):
@@ -142,7 +149,18 @@ class Reader:
         self.namespace(unit.cursor, "")
         for enum in self.library.enums:
             enum.words = self.tables.get(enum.qualified)
+        for struct in self.library.structs:
+            for method in struct.methods:
+                method.doc = method.doc or self.inherited(struct, method)
         return self.library
+
+    def inherited(self, struct, method):
+        """What a base says of a method that overrides its own."""
+        for base in filter(None, map(self.library.struct, struct.bases)):
+            for one in base.methods:
+                if one.name == method.name and [p.type for p in one.parameters] == [p.type for p in method.parameters]:
+                    return one.doc or self.inherited(base, one)
+        return ""
 
     def namespace(self, cursor, name):
         for child in cursor.get_children():
@@ -185,12 +203,13 @@ class Reader:
         for child in cursor.get_children():
             if child.kind == Kind.CXX_BASE_SPECIFIER and child.access_specifier == PUBLIC:
                 one.bases.append(type_of(child.type))
+            one.has_constructor |= child.kind == Kind.CONSTRUCTOR
             if child.access_specifier != PUBLIC:
                 continue
             if child.kind in (Kind.ENUM_DECL, Kind.STRUCT_DECL, Kind.CLASS_DECL):
                 self.declaration(child, one.qualified)
             elif child.kind == Kind.FIELD_DECL:
-                one.fields.append(Field(child.spelling, type_of(child.type), plain(child.raw_comment)))
+                one.fields.append(Field(child.spelling, type_of(child.type), plain(child.raw_comment), default_of(child)))
             elif child.kind == Kind.CONSTRUCTOR and not (child.is_copy_constructor() or child.is_move_constructor()):
                 one.constructors.append(Function(one.name, one.qualified, "", parameters_of(child), plain(child.raw_comment)))
             elif child.kind == Kind.CXX_METHOD and not child.spelling.startswith("operator"):

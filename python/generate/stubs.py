@@ -1,8 +1,7 @@
 """Type stubs of the stages' modules, from the same headers as their bindings."""
-import re
-
-from generate.bindings import NUMBERS, Types, arguments_of, without_reference
-from generate.headers import python_name
+from generate.docs import Docs
+from generate.headers import Function, python_name
+from generate.kinds import Names, Types, python_call
 
 HEAD = '''"""{doc}"""
 import enum
@@ -17,99 +16,25 @@ import numpy.typing as npt
 class _Type(type): ...
 
 '''
-FLOAT = {"double", "float"}
 
 
-class Stubs:
+class Stubs(Names):
     def __init__(self, library, not_bound):
+        super().__init__(library)
         self.library = library
+        self.docs = Docs(library)
         self.missing = {name for name, _ in not_bound}
         self.types = Types(library)
-        self.structs = {one.qualified: one for one in library.structs}
-        self.enums = {one.qualified for one in library.enums}
-
-    def stage_of(self, owner):
-        while owner in self.structs:
-            owner = self.structs[owner].owner
-        return owner.split("::")[1] if "::" in owner else ""
-
-    def name_of(self, qualified, stage):
-        """As it is written in the stage's stub."""
-        parts = qualified.split("::")[1:]
-        other = self.stage_of(qualified.rsplit("::", 1)[0])
-        if not other:
-            return ("robomill." if stage else "") + ".".join(parts)
-        return ".".join(parts[1:]) if other == stage else "robomill." + ".".join(parts)
-
-    def type(self, name, stage, given):
-        """@param given  whether a caller gives it: then more is taken than is returned."""
-        name = without_reference(name).removeprefix("const ")
-        if name in ("void",):
-            return "None"
-        if name == "bool":
-            return "bool"
-        if name in FLOAT:
-            return "float"
-        if re.fullmatch(NUMBERS, name) or name == "std::byte":
-            return "int"
-        if name in ("std::string", "std::string_view", "char *"):
-            return "str"
-        if name == "std::filesystem::path":
-            return "str | os.PathLike[str]" if given else "pathlib.Path"
-        if name.startswith("std::complex"):
-            return "complex"
-        if name == "robomill::io::TomlSource":
-            return "str | os.PathLike[str] | robomill.io.TomlSource" if given else self.name_of(name, stage)
-        if name in self.enums:
-            text = self.name_of(name, stage)
-            return f"{text} | str" if given else text
-        if name in self.structs:
-            return self.name_of(name, stage)
-        if name.endswith(" *"):
-            return f"{self.type(name[:-2], stage, given)} | None"
-        if name.startswith("Eigen::"):
-            return "npt.ArrayLike" if given else f"npt.NDArray[np.{'complex128' if 'complex' in name else 'float64'}]"
-        template, inner = arguments_of(name)
-        if template in ("std::vector", "std::array", "std::span", "std::set"):
-            if re.fullmatch(NUMBERS, inner[0].removeprefix("const ")) or "std::complex" in inner[0]:
-                return "npt.ArrayLike" if given else "npt.NDArray[Any]"
-            kind = "Sequence" if given else "set" if template == "std::set" else "list"
-            return f"{kind}[{self.type(inner[0], stage, given)}]"
-        if template == "std::optional":
-            return f"{self.type(inner[0], stage, given)} | None"
-        if template == "std::shared_ptr":
-            return f"{self.type(inner[0], stage, given)} | None"
-        if template == "std::unique_ptr":
-            return self.type(inner[0], stage, given)
-        if template in ("std::pair", "std::tuple"):
-            return f"tuple[{', '.join(self.type(one, stage, given) for one in inner)}]"
-        if template == "std::variant":
-            return " | ".join(self.type(one, stage, given) for one in inner)
-        if template == "std::map":
-            return f"{'Mapping' if given else 'dict'}[{self.type(inner[0], stage, given)}, {self.type(inner[1], stage, given)}]"
-        if template == "std::function":
-            found = re.match(r"(.*?)\s*\((.*)\)$", ", ".join(inner))
-            taken = ", ".join(self.type(one, stage, False) for one in arguments_of(f"x<{found.group(2)}>")[1] if one)
-            return f"Callable[[{taken}], {self.type(found.group(1), stage, True)}]"
-        return "Any"
 
     def signature(self, function, stage, is_method):
-        given, returned = [], []
-        for parameter in function.parameters:
-            plain = without_reference(parameter.type)
-            if plain == "robomill::Progress" or parameter.default == "nullptr" and not self.types.is_parameter(parameter.type):
-                continue
-            if parameter.type.endswith("&") and not parameter.type.startswith("const ") and plain.startswith("std::vector<"):
-                returned.append(self.type(plain, stage, False))
-                continue
+        call, given = python_call(function, self.types), []
+        for parameter in call.given:
             default = " = ..." if parameter.default is not None else ""
             given.append(f"{python_name(parameter.name)}: {self.type(parameter.type, stage, True)}{default}")
-        if any(without_reference(one.type) == "robomill::Progress" for one in function.parameters):
+        if call.progress:
             given.append("progress: Callable[[str, float], object] | None = ...")
-        result = self.type(function.result, stage, False)
-        if returned:
-            parts = ([] if function.result == "void" else [result]) + returned
-            result = f"tuple[{', '.join(parts)}]"
+        parts = ([] if call.result == "void" else [self.type(call.result, stage, False)]) + [self.type(one.type, stage, False) for one in call.returned]
+        result = f"tuple[{', '.join(parts)}]" if call.returned and not self.types.is_listing(function) else parts[0] if parts else "None"
         head = (["self"] if is_method else []) + (["*", *given] if given else [])
         return f"({', '.join(head)}) -> {result}"
 
@@ -133,21 +58,31 @@ class Stubs:
                 lines.append(f"{indent}@staticmethod")
             ignore = "  # type: ignore[override]" if is_method and self.structs[function.owner].bases else ""
             lines.append(f"{indent}def {python_name(function.name)}{self.signature(function, stage, is_method and not static)}:{ignore}")
-            lines.append(self.documented(function.doc, indent))
+            lines.append(self.documented(self.docs.function(function), indent))
         return lines
 
     def enum(self, enum, indent):
         lines = [f"{indent}class {enum.name}(metaclass=_Type):", self.documented(enum.doc, indent)]
-        for name, _ in enum.values:
-            lines.append(f"{indent}    {python_name(name)}: {enum.name}")
+        for name, doc in enum.values:
+            lines += [f"{indent}    {python_name(name)}: {enum.name}", *([self.documented(doc, indent)] if doc else [])]
         lines += [f"{indent}    __members__: dict[str, {enum.name}]", f"{indent}    def __init__(self, value: int | str) -> None: ...",
                   f"{indent}    @property", f"{indent}    def name(self) -> str: ...", f"{indent}    @property", f"{indent}    def value(self) -> int: ..."]
         name = ".".join(enum.qualified.split("::")[2 if self.stage_of(enum.owner) else 1:])
         return [line.replace(f": {enum.name}", f": {name}").replace(f"[str, {enum.name}]", f"[str, {name}]") for line in lines]
 
+    def constructed(self, struct):
+        """Constructors of a class that Python has."""
+        if not struct.is_class or struct.is_abstract or f"{struct.qualified}::{struct.name}" in self.missing:
+            return []
+        return struct.constructors if struct.has_constructor else [Function(struct.name, struct.qualified, "", [], "")]
+
     def struct(self, struct, stage, indent):
         bases = ", ".join(self.name_of(one, stage) for one in struct.bases if one in self.structs)
-        lines = [f"{indent}class {struct.name}({bases or 'metaclass=_Type'}):", self.documented(struct.doc, indent)]
+        inherited = [field for base in struct.bases if base in self.structs for field in self.structs[base].fields]
+        fields = [one for one in [*inherited, *struct.fields] if f"{struct.qualified}::{one.name}" not in self.missing]
+        constructed = self.constructed(struct)
+        doc = self.docs.klass(struct, constructed) if struct.is_class else self.docs.struct(struct, fields)
+        lines = [f"{indent}class {struct.name}({bases or 'metaclass=_Type'}):", self.documented(doc, indent)]
         inner = indent + "    "
         for enum in self.library.enums:
             if enum.owner == struct.qualified:
@@ -155,12 +90,12 @@ class Stubs:
         for other in self.library.structs:
             if other.owner == struct.qualified:
                 lines += self.struct(other, stage, inner)
-        inherited = [field for base in struct.bases if base in self.structs for field in self.structs[base].fields]
-        fields = [one for one in [*inherited, *struct.fields] if f"{struct.qualified}::{one.name}" not in self.missing]
-        constructed = [one for one in struct.constructors if f"{struct.qualified}::{struct.name}" not in self.missing] if struct.is_class and not struct.is_abstract else []
         if struct.qualified == "robomill::io::TomlSource":
             lines.append(f"{inner}def __init__(self, path: str | os.PathLike[str], *, text: str | None = ..., settings: Sequence[TomlSetting] = ...) -> None: ...")
-        elif not constructed and (struct.is_class or any(one.type.endswith("&") or "unique_ptr" in one.type for one in struct.fields)):
+        elif self.types.refers(struct):
+            given = "".join(f", {python_name(one.name)}: {self.type(one.type, stage, True)}{'' if one.type.endswith('&') else ' = ...'}" for one in fields)
+            lines.append(f"{inner}def __init__(self, *{given}) -> None: ...")
+        elif not constructed and (struct.is_class or self.docs.made_by_library(struct)):
             lines.append(f"{inner}def __init__(self, *args: Any, **kwargs: Any) -> None: ...")  # the library makes them
         elif not struct.is_class:
             given = "".join(f", {python_name(one.name)}: {self.type(one.type, stage, True)} = ..." for one in fields)

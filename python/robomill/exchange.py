@@ -30,6 +30,15 @@ def frfs_from_arrays(frequency_hz, receptances, *, response="displacement"):
         by FRF: "xx", "xy", "1x:3y"
     response : str
         what was measured: displacement, velocity or acceleration, in SI units
+
+    Returns
+    -------
+    robomill.modal.FrfSet
+
+    Raises
+    ------
+    InvalidInput
+        if lengths differ, a number is not finite, or frequencies do not increase
     """
     frequency = np.asarray(frequency_hz, dtype=float)
     used = frequency > 0 if _ORDERS.get(response) else np.ones(len(frequency), dtype=bool)
@@ -41,7 +50,17 @@ def frfs_from_arrays(frequency_hz, receptances, *, response="displacement"):
 
 
 def frfs_to_arrays(frfs):
-    """(frequency_hz, {name: receptance}) of an FrfSet."""
+    """Arrays of an FrfSet.
+
+    Parameters
+    ----------
+    frfs : robomill.modal.FrfSet
+
+    Returns
+    -------
+    tuple(array of n, dict of str to array of n)
+        frequencies in Hz, and receptances in m/N by name
+    """
     return np.array(frfs.frequency_hz), {_modal.to_string(name=one.name): np.array(one.receptance) for one in frfs.frfs}
 
 
@@ -53,7 +72,16 @@ def frfs_from_pyuff(sets, *, response=None):
     sets : sequence of dict
         as pyuff.UFF.read_sets() returns them
     response : str, optional
-        where a set does not say what its ordinate is
+        where a set does not say what its ordinate is: displacement, velocity or acceleration
+
+    Returns
+    -------
+    robomill.modal.FrfSet
+
+    Raises
+    ------
+    InvalidInput
+        if none is an FRF, one does not say what it is, has another direction than x, y, z, or other frequencies than the rest
     """
     found, frequency = {}, None
     for one in [sets] if isinstance(sets, dict) else sets:
@@ -79,7 +107,21 @@ def frfs_from_pyuff(sets, *, response=None):
 
 
 def frfs_to_pyuff(frfs):
-    """Data sets of type 58, as pyuff writes them."""
+    """Data sets of type 58, as pyuff writes them.
+
+    Parameters
+    ----------
+    frfs : robomill.modal.FrfSet
+
+    Returns
+    -------
+    list of dict
+
+    Raises
+    ------
+    InvalidInput
+        if one has a rotation or a moment, which pyuff's sets have not
+    """
     codes = {axis: code for code, axis in _AXES.items()}
     sets = []
     for one in frfs.frfs:
@@ -100,8 +142,14 @@ def frfs_from_pyfrf(measured, name="xx"):
 
     Parameters
     ----------
+    measured : pyFRF.FRF
+        of one response and one excitation
     name : str
         which FRF it is
+
+    Returns
+    -------
+    robomill.modal.FrfSet
     """
     values = np.squeeze(measured.get_FRF(form="receptance"))
     frequency = np.asarray(measured.get_f_axis(), dtype=float)
@@ -110,7 +158,19 @@ def frfs_from_pyfrf(measured, name="xx"):
 
 
 def frfs_to_ema(frfs, excitation=None):
-    """(FRFs, frequencies, names) as sdypy.EMA.Model(frf, freq, frf_type="receptance") takes them: a row a response, of one excitation."""
+    """FRFs of one excitation as sdypy.EMA.Model(frf, freq, frf_type="receptance") takes them.
+
+    Parameters
+    ----------
+    frfs : robomill.modal.FrfSet
+    excitation : str, optional
+        "1x"; that of the first FRF by default
+
+    Returns
+    -------
+    tuple(array of m x n, array of n, list of str)
+        receptances in m/N, a row a response; frequencies in Hz; the names of the rows
+    """
     reference = frfs.frfs[0].name.excitation if excitation is None else _modal.parse_dof(text=excitation)
     text = _modal.to_string(dof=reference)
     rows = [one for one in frfs.frfs if _modal.to_string(dof=one.name.excitation) == text]
@@ -118,7 +178,17 @@ def frfs_to_ema(frfs, excitation=None):
 
 
 def poles_to_ema(model):
-    """Natural frequencies in Hz, damping ratios and poles in rad/s of a ModalModel, as sdypy-EMA names them: nat_freq, nat_xi, poles."""
+    """Natural frequencies, damping ratios and poles of a model, as sdypy-EMA names them.
+
+    Parameters
+    ----------
+    model : robomill.modal.ModalModel
+
+    Returns
+    -------
+    dict of str to array
+        nat_freq in Hz, nat_xi, poles in rad/s
+    """
     frequency = np.array([mode.frequency_hz for mode in model.modes])
     damping = np.array([mode.damping_ratio for mode in model.modes])
     omega = 2 * np.pi * frequency

@@ -23,7 +23,19 @@ def _numbers(values):
 
 
 def lobes(result, *, axes=None):
-    """The stability limit over the spindle speed, with its 5 to 95 % band where an uncertainty was asked for."""
+    """The stability limit over the spindle speed in rpm, with its 5 to 95 % band where an uncertainty was asked for.
+
+    Parameters
+    ----------
+    result : Result or dict
+        of robomill.lobes, or lobes.json
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     document = _document(result)
     axes = _axes(axes)
     for curve in sorted({point["curve"] for point in document.get("boundary", [])}):
@@ -59,7 +71,23 @@ def _receptance(model, name, frequency_hz):
 
 
 def frfs(result, *, fit=None, names=None, axes=None):
-    """Magnitude of receptances; those of the modes of `fit` (a modes.json) dashed beside them."""
+    """Magnitude of receptances in µm/N over the frequency in Hz.
+
+    Parameters
+    ----------
+    result : Result or dict
+        of robomill.frf or robomill.couple, or tip.json
+    fit : Result or dict, optional
+        of robomill.modes, or modes.json: its receptances dashed beside them, residuals left out
+    names : sequence of str, optional
+        which FRFs, "xx"; all by default
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     document = _document(result)
     axes = _axes(axes)
     frequency = np.array(document["frequency_hz"])
@@ -75,7 +103,19 @@ def frfs(result, *, fit=None, names=None, axes=None):
 
 
 def modes(result, *, axes=None):
-    """Damping ratio over frequency, with two standard deviations where the fit has them."""
+    """Damping ratios in % over frequencies in Hz, with two standard deviations where the fit has them.
+
+    Parameters
+    ----------
+    result : Result or dict
+        of robomill.modes, or modes.json
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     document = _document(result)
     axes = _axes(axes)
     for number, mode in enumerate(document["modes"], 1):
@@ -88,7 +128,19 @@ def modes(result, *, axes=None):
 
 
 def forces(result, *, axes=None):
-    """Forces over a revolution with the record beside them where there is one; of a program the peak force of each block."""
+    """Forces in N over a revolution, with the record beside them where there is one; of a program the peak force of each block.
+
+    Parameters
+    ----------
+    result : Result or dict
+        of robomill.forces, or forces.json
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     document = _document(result)
     axes = _axes(axes)
     if document.get("blocks"):
@@ -115,7 +167,15 @@ def trajectory(table, *, limits=None, period_s=None, joints=None, axes=None):
     limits : mapping of str to array, optional
         velocity, acceleration and jerk of each joint
     period_s : float, optional
-        sample period; by default that of time_s
+        sample period in s; by default that of time_s
+    joints : sequence of str, optional
+        which columns; by default all that are joints
+    axes : sequence of four matplotlib.axes.Axes, optional
+        position, velocity, acceleration, jerk; new ones by default
+
+    Returns
+    -------
+    sequence of matplotlib.axes.Axes
     """
     time = np.asarray(table["time_s"], dtype=float)
     step = float(np.median(np.diff(time))) if period_s is None else period_s
@@ -142,8 +202,20 @@ def spectrogram(samples, sample_rate_hz, *, decisions=(), window_s=0.1, axes=Non
 
     Parameters
     ----------
+    samples : array of n
+        of one channel
+    sample_rate_hz : float
+        in Hz
     decisions : sequence of (time_s, state), optional
         as the monitor gave them, by time
+    window_s : float, optional
+        length of the windows in s
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
     """
     samples = np.asarray(samples, dtype=float)
     axes = _axes(axes)
@@ -158,7 +230,19 @@ def spectrogram(samples, sample_rate_hz, *, decisions=(), window_s=0.1, axes=Non
 
 
 def gamma_map(result, *, axes=None):
-    """How the limit of the worst block depends on the turn about the tool's axis and on positions (blocks.json)."""
+    """How the limit of the worst block, in mm, depends on the turn about the tool's axis and on positions.
+
+    Parameters
+    ----------
+    result : Result or dict
+        of robomill.plan of a program, or blocks.json
+    axes : matplotlib.axes.Axes, optional
+        to draw into; new ones by default
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     document = _document(result)
     document = document.get("blocks") if "limit_over" not in document and isinstance(document.get("blocks"), dict) else document
     axes = _axes(axes)

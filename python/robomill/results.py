@@ -70,11 +70,26 @@ class Part:
         return type(self), (self._document,)
 
     def to_dict(self):
-        """The JSON document, as a copy."""
+        """The JSON document, as a copy that may be changed.
+
+        Returns
+        -------
+        dict
+        """
         return copy.deepcopy(self._document)
 
     def to_pandas(self, key):
-        """A list of the document as a pandas.DataFrame, a row an entry."""
+        """A list of the document as a table of pandas, a row an entry.
+
+        Parameters
+        ----------
+        key : str
+            of the list: "limit"
+
+        Returns
+        -------
+        pandas.DataFrame
+        """
         import pandas
 
         return pandas.DataFrame(self._document[key])
@@ -84,7 +99,11 @@ class Part:
 
 
 class Result(Part):
-    """A verb's document, with its summary, and why its answer was not reached where it was not."""
+    """A verb's document, with its summary, and why its answer was not reached where it was not.
+
+    Keys are attributes; tables within are read in the same way, lists of numbers are arrays, in which `null` is NaN. Frozen.
+    `key in result` and `result[key]` work as of a dict.
+    """
 
     __slots__ = ("_summary", "_shortfall", "_page")
 
@@ -108,7 +127,17 @@ class Result(Part):
         return type(self), (self._document, self._summary, self._shortfall)
 
     def page(self):
-        """The page with the result's figures: HTML that opens offline."""
+        """The page with the result's figures: HTML that opens offline. A notebook shows it (`_repr_html_`).
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        ValueError
+            if this is no verb's own result: it came out of a pickle
+        """
         if self._page is None:
             raise ValueError("this result has no page; a verb's own result has")
         return self._page()

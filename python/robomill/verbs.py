@@ -87,26 +87,36 @@ def _run(verbs, inputs, output, progress, options):
     return Result(json.loads(document) if document else {}, summary, shortfall, page)
 
 
+def _entry(option, required):
+    kind = _KINDS[option["takes"]]
+    kind = kind if isinstance(kind, str) else kind.__name__
+    words = f", one of {', '.join(option['words'])}" if option["words"] else ""
+    needs = f"; needs `{_python_name(option['needs'])}`" if option["needs"] else ""
+    excludes = f"; not with `{_python_name(option['excludes'])}`" if option["excludes"] else ""
+    return [f"{_python_name(option['name'])} : {kind}{words}{'' if required else ', optional'}", f"    {option['meaning']}{needs}{excludes}"]
+
+
+def _section(title, lines):
+    return ["", title, "-" * len(title), *lines]
+
+
 def _documentation(verbs):
     lines = []
     for verb in verbs:
-        lines += [f"{verb['purpose'][:1].upper()}{verb['purpose'][1:]}.", "", verb["more"], ""]
-    lines += ["Parameters", "----------"]
-    for verb in verbs[:1]:
-        lines += [f"{verb['input']['name'] or 'inputs'} : path or sequence of paths", f"    {verb['input']['meaning']}"]
-    seen = set()
+        lines += [f"{verb['purpose'][:1].upper()}{verb['purpose'][1:]}.", *(["", verb["more"]] if verb["more"] else []), ""]
+    first = verbs[0]["input"]
+    given = ["*inputs : path", f"    {first['meaning']}"]
+    own = {first["name"]: first}
     for verb in verbs:
-        for option in verb["options"]:
-            if option["name"] in seen:
-                continue
-            seen.add(option["name"])
-            kind = _KINDS[option["takes"]]
-            kind = kind if isinstance(kind, str) else kind.__name__
-            words = f", one of {', '.join(option['words'])}" if option["words"] else ""
-            lines += [f"{_python_name(option['name'])} : {kind}{words}", f"    {option['meaning']}"]
-    lines += ["output : path", "    a file or folder that is written too, its format by its ending",
-              "progress : callable or True", "    called with a task and the share that is done; True: a bar of tqdm", "",
-              "Returns", "-------", "Result", "    the verb's JSON document", "", "Raises", "------", "InvalidInput", "    naming file, line or field, value, unit and rule"]
+        for option in [*verb["options"], verb["input"]]:
+            if option["name"] and own.setdefault(option["name"], option) is option and option is not first:
+                given += _entry(option, option["required"] and verb is verbs[0])
+    given += ["output : path, optional", "    a file or folder that is written too, its format by its ending", "progress : callable(str, float) or True, optional",
+              "    called with a task and the share that is done; True: a bar of tqdm"]
+    lines = lines[:-1] + _section("Parameters", given)
+    lines += _section("Returns", ["Result", "    the verb's JSON document; docs/formats.md has its keys"])
+    lines += _section("Raises", ["InvalidInput", "    naming file, line or field, value, unit and rule", "KeyboardInterrupt", "    when Ctrl-C is pressed"])
+    lines += _section("Notes", ["On the command line:", "", *(f"    robomill {verb['example']}" for verb in verbs if verb["example"])])
     return "\n".join(lines)
 
 
