@@ -45,7 +45,7 @@ robomill_package(DEVELOPMENT librobomill-dev libdevel "milling with robots witho
 if(ROBOMILL_PYTHON)
   robomill_package(PYTHON python3-robomill python "milling with robots without chatter: Python module"
     "This package has the module robomill." "${library_package} ${of_this_version}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, robomill")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/python/postinst ${PROJECT_SOURCE_DIR}/packaging/python/prerm)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/examples/ DESTINATION share/doc/python3-robomill/examples COMPONENT python
     FILES_MATCHING PATTERN "*.py" PATTERN "README.md")

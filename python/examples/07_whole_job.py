@@ -9,10 +9,10 @@ import pathlib
 import tempfile
 
 import robomill
-from robomill import jobs, plot
+from robomill import plot
 
 folder = pathlib.Path(tempfile.mkdtemp())
-jobs.write_init(files=jobs.init_files(options=jobs.InitOptions(kind="job", file=folder, example=True)))
+print(robomill.init("job", folder, example=True).summary)
 
 # %%
 job = robomill.plan(folder / "job.toml", output=folder / "out")

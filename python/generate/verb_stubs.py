@@ -25,23 +25,28 @@ def kinds():
     return {name: " | ".join(dict.fromkeys(all_kinds)) for name, all_kinds in out.items()}
 
 
+def documented(thing):
+    doc = thing.__doc__.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\n    ")
+    return f'    """{doc}"""\n'
+
+
 def verb_stub(name, known):
     parts = ["*inputs: str | os.PathLike[str]"]
     for parameter in list(inspect.signature(getattr(robomill, name)).parameters.values())[1:]:
         kind = {"output": "str | os.PathLike[str]", "progress": "Callable[[str, float], object] | bool"}.get(parameter.name) or known[parameter.name]
         parts.append(f"{parameter.name}: {kind} | None = ...")
-    doc = getattr(robomill, name).__doc__.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\n    ")
-    return f'def {name}({", ".join(parts)}) -> Result:\n    """{doc}"""\n'
+    return f'def {name}({", ".join(parts)}) -> Result:\n{documented(getattr(robomill, name))}'
 
 
 def main():
     stub, folder = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
     known = kinds()
     modules = sorted(name for name in robomill.__all__ if isinstance(getattr(robomill, name), types.ModuleType))
-    head = "".join(f"from . import {name} as {name}\n" for name in modules) + "from .results import Result as Result\n"
+    head = "".join(f"from . import {name} as {name}\n" for name in modules) + "from .results import Result as Result\n" + \
+        "from .commands import Served as Served, init as init, monitor_input as monitor_input, serve_folder as serve_folder\n"
     errors = "".join(f"    {name}: {kind}\n" for name, kind in
                      {"where": "str", "field": "str", "number": "float | None", "value": "str", "unit": "str", "rule": "str", "hint": "str"}.items())
-    text = stub.replace("from typing import Any", "from typing import Any, Literal") + head + f"\n__version__: str\n\nclass InvalidInput(ValueError):\n{errors}\n" + \
+    text = stub.replace("from typing import Any", "from typing import Any, Literal") + head + f"\n__version__: str\n\nclass InvalidInput(ValueError):\n{documented(robomill.InvalidInput)}{errors}\n" + \
         "\n".join(verb_stub(name, known) for name in robomill._verbs)
     path = folder / "__init__.pyi"
     path.write_text(text)

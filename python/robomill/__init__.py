@@ -9,6 +9,7 @@ import types as _types
 
 from . import _robomill
 from ._robomill import __version__
+from .commands import Served, init, monitor_input, serve_folder
 from .results import Result
 from .verbs import define as _define
 
@@ -19,4 +20,4 @@ for _name, _value in _library.items():
         _sys.modules[f"{__name__}.{_name}"] = _value
 _verbs = _define(globals(), __name__)
 
-__all__ = ["Result", "__version__", *_library, *_verbs]
+__all__ = ["Result", "Served", "__version__", "init", "monitor_input", "serve_folder", *_library, *_verbs]
