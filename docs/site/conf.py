@@ -30,6 +30,8 @@ breathe_default_members = ("members",)
 cpp_id_attributes = ["ROBOMILL_API"]
 cpp_debug_lookup = False
 
+add_module_names = False
+
 html_theme = "furo"
 html_static_path = [os.path.join(work, "static")]
 html_css_files = ["site.css"]
