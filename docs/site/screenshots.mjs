@@ -1,5 +1,6 @@
 // node docs/site/screenshots.mjs [BUILD] [--only NAME] [--chromium PATH]
-// Makes the pictures of pictures/pictures.json from the running product: runs the commands of each in a copy of the examples, and takes the named sections of the page.
+// Makes the pictures of pictures/pictures.json from the running product: runs the commands of each in a copy of the examples, and takes the named sections of the page,
+// or the image that a command makes.
 // Writes the hash of its sources beside it; docs/site/check_pictures fails where they have changed since. BUILD is build/ unless given.
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -49,10 +50,13 @@ async function picture(browser, { page: file, sections, height: most }, scratch,
 async function make(one, build, browser) {
   const scratch = mkdtempSync(join(tmpdir(), 'robomill-pictures-'));
   try {
-    for (const folder of ['examples', 'data']) cpSync(join(root, folder), join(scratch, folder), { recursive: true });
+    for (const folder of ['examples', 'data', 'python/examples']) cpSync(join(root, folder), join(scratch, folder), { recursive: true });
     for (const [to, from] of Object.entries(one.copies ?? {})) copyFileSync(join(root, from), join(scratch, to));
-    for (const [program, ...words] of one.commands) execFileSync(join(build, program), words, { cwd: scratch, stdio: ['ignore', 'ignore', 'inherit'] });
-    await picture(browser, one, scratch, join(here, 'pictures', one.picture));
+    const env = { ...process.env, PYTHONPATH: join(build, 'python'), PYTHONDONTWRITEBYTECODE: '1', MPLBACKEND: 'Agg' };
+    for (const [program, ...words] of one.commands) execFileSync(resolve(build, program), words, { cwd: scratch, stdio: ['ignore', 'ignore', 'inherit'], env });
+    const target = join(here, 'pictures', one.picture);
+    if (one.image) copyFileSync(join(scratch, one.image), target);
+    else await picture(browser, one, scratch, target);
     one.sha256 = hashOf(one.sources);
     console.log(one.picture);
   } finally {

@@ -21,5 +21,16 @@ def test_readme_runs(capsys):
     assert capsys.readouterr().out.startswith("[(4000.0")
 
 
-def test_there_are_eight():
-    assert len(EXAMPLES) == 8
+def test_tutorial_shows_an_example():
+    """The tutorial's Python is that of the example, line by line."""
+    root = EXAMPLES[0].parents[2]
+    tutorial = (root / "docs/site/tutorials/researcher.md").read_text(encoding="utf-8")
+    script = (root / "python/examples/09_own_method.py").read_text(encoding="utf-8")
+    blocks = [part.split("```")[0] for part in tutorial.split("```python\n")[1:]]
+    assert len(blocks) >= 4
+    for block in blocks:
+        assert block in script, block
+
+
+def test_there_are_nine():
+    assert len(EXAMPLES) == 9
