@@ -105,6 +105,8 @@ constexpr std::array<Reader, 5> all = {{
 
 }  // namespace
 
-std::span<const Reader> document_readers() { return all; }
+std::span<const Reader> document_readers() {
+  return all;
+}
 
 }  // namespace robomill::fuzz

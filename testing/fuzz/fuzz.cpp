@@ -1,6 +1,6 @@
 // A program of libFuzzer for the reader that its name ends with: fuzz_uff.
-#include <signal.h>
 #include <pthread.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <cstddef>

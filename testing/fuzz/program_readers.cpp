@@ -57,6 +57,8 @@ constexpr std::array<Reader, 3> all = {{
 
 }  // namespace
 
-std::span<const Reader> program_readers() { return all; }
+std::span<const Reader> program_readers() {
+  return all;
+}
 
 }  // namespace robomill::fuzz

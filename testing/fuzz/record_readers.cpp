@@ -90,13 +90,16 @@ constexpr std::array<Reader, 10> all = {{
     {"tdms", [](std::string_view bytes) { read_any_record(file_of(bytes, ".tdms")); }},
     {"mat", read_mat},
     {"hdf5", [](std::string_view bytes) { read_any_record(file_of(bytes, ".h5")); }},
-    {"numpy", [](std::string_view bytes) { read_any_record(file_of(bytes, bytes.starts_with("PK") ? ".npz" : ".npy")); }},
+    {"numpy",
+     [](std::string_view bytes) { read_any_record(file_of(bytes, bytes.starts_with("PK") ? ".npz" : ".npy")); }},
     {"wav", [](std::string_view bytes) { read_any_record(file_of(bytes, ".wav")); }},
     {"raw", read_raw},
 }};
 
 }  // namespace
 
-std::span<const Reader> record_readers() { return all; }
+std::span<const Reader> record_readers() {
+  return all;
+}
 
 }  // namespace robomill::fuzz

@@ -42,7 +42,8 @@ void read_stream_block(std::string_view bytes) {
   if (!read.block) return;
   require(!read.block->samples.empty() && std::isfinite(read.block->sample_rate_hz), "a block has samples and a rate");
   const std::string written = monitor::encode_stream_block(*read.block);
-  require(written.size() == bytes.size() && written.substr(monitor::stream_header_bytes) == bytes.substr(monitor::stream_header_bytes),
+  require(written.size() == bytes.size() &&
+              written.substr(monitor::stream_header_bytes) == bytes.substr(monitor::stream_header_bytes),
           "samples are written as they came");
 }
 
@@ -157,6 +158,8 @@ constexpr std::array<Reader, 6> all = {{
 
 }  // namespace
 
-std::span<const Reader> service_readers() { return all; }
+std::span<const Reader> service_readers() {
+  return all;
+}
 
 }  // namespace robomill::fuzz

@@ -180,11 +180,13 @@ void require_no_other_description(std::string_view whole, const std::string& whe
 urdf::ModelInterfaceSharedPtr parse(std::string_view content, const std::string& where) {
   require_no_other_description(content, where);
   require_shallow(content, where);
-  require_tree(std::string(content), where);
+  // tinyxml takes the bytes of a letter together: of a text that ends within one it would read on behind its end.
+  const std::string ended = std::string(content) + std::string(4, '\0');
+  require_tree(ended, where);
   const Listener listener;
   std::string said;
   try {
-    urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(std::string(content));
+    urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(ended);
     if (model && listener.said().empty()) return model;
     said = listener.said();
   } catch (const std::exception& error) {

@@ -189,6 +189,18 @@ TEST(Urdf, OtherDescriptionsAreNamed) {
   EXPECT_NO_THROW((void)parse_urdf(written, "arm.urdf", {.tip = "flange"}));
 }
 
+// What tinyxml would read behind its end, AddressSanitizer sees.
+TEST(Urdf, ATextThatEndsWithinALetterIsRejected) {
+  for (const char* begun : {"\xc3", "\xe2\x82", "\xf0\x9f\x98"}) {
+    for (const char* cut : {"<child link=\"", "<link na", "<joint name=\"j1\" ty"}) {
+      const std::string text = good.substr(0, good.find(cut) + std::string(cut).size()) + begun;
+      EXPECT_NE(rejection([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); }).find("is no URDF"),
+                std::string::npos)
+          << text;
+    }
+  }
+}
+
 TEST(Urdf, LinksThatAreNoTreeAreRejected) {
   const auto said = [](const std::string& text) {
     return rejection([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); });
