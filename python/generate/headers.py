@@ -218,6 +218,8 @@ class Reader:
 
 
 def read_library(root, includes):
-    clang.Config.set_library_file("/usr/lib/llvm-14/lib/libclang.so.1")
+    debian = "/usr/lib/llvm-14/lib/libclang.so.1"  # elsewhere the package libclang brings its own
+    if os.path.exists(debian):
+        clang.Config.set_library_file(debian)
     arguments = ["-x", "c++", "-std=c++20", f"-I{root}", *[f"-isystem{one}" for one in includes]]
     return Reader(os.path.abspath(root)).read(arguments)
