@@ -40,8 +40,8 @@ void read_toml(std::string_view bytes) {
 
 /// By its kind: "lobes", below it the document.
 void read_document(std::string_view bytes) {
-  const Told document = told(bytes);
-  const std::string_view kind = document.how;
+  const Labelled document = labelled(bytes);
+  const std::string_view kind = document.label;
   const io::TomlSource source(folder() / "input.toml", std::string(document.bytes));
   std::vector<std::string> notes;
   accept_or_reject([&] {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -49,7 +50,7 @@ const std::filesystem::path& file_of(std::string_view bytes, std::string_view en
   return path;
 }
 
-Told told(std::string_view bytes) {
+Labelled labelled(std::string_view bytes) {
   const std::size_t end = bytes.find('\n');
   if (end == std::string_view::npos) return {bytes, {}};
   return {bytes.substr(0, end), bytes.substr(end + 1)};

@@ -15,10 +15,10 @@ namespace robomill::fuzz {
 [[nodiscard]] const std::filesystem::path& folder();
 
 /// How the bytes are to be read stands in their first line: that line without its end, and the bytes below it.
-struct Told {
-  std::string_view how, bytes;
+struct Labelled {
+  std::string_view label, bytes;
 };
-[[nodiscard]] Told told(std::string_view bytes);
+[[nodiscard]] Labelled labelled(std::string_view bytes);
 
 /// Stops the process where a promise is broken: a fuzzer keeps the bytes.
 void require(bool holds, const char* promise);

@@ -41,7 +41,7 @@ constexpr double chord_tolerance_m = 1e-4;
 
 /// The machine, or nothing, stands in the first line.
 void read_gcode(std::string_view bytes) {
-  const auto [machine, text] = told(bytes);
+  const auto [machine, text] = labelled(bytes);
   program::ProgramReading reading = {.chord_tolerance_m = chord_tolerance_m};
   accept_or_reject([&, machine = machine] {
     if (!machine.empty()) reading.machine = program::parse_machine(machine);

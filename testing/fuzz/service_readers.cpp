@@ -1,9 +1,9 @@
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
+#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
