@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -116,9 +117,14 @@ class HttpConnection {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
   bool read_some(Clock::time_point end) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
     pollfd waiting = {.fd = socket_, .events = POLLIN, .revents = 0};
-    timed_out_ = left.count() <= 0 || ::poll(&waiting, 1, static_cast<int>(left.count())) <= 0;
+    int ready = -1;
+    do {  // a signal, a fuzzer's alarm say, ends a wait
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+      timed_out_ = left.count() <= 0;
+      ready = timed_out_ ? 0 : ::poll(&waiting, 1, static_cast<int>(left.count()));
+    } while (ready < 0 && errno == EINTR);
+    timed_out_ = ready <= 0;
     if (timed_out_) return false;
     char block[65536];
     const ssize_t read = ::recv(socket_, block, sizeof(block), 0);
