@@ -37,8 +37,7 @@ class HttpConnection {
     const bool bound = from == 1 || ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    open_ =
-        socket_ >= 0 && bound && ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    open_ = socket_ >= 0 && bound && connect(address);
   }
   ~HttpConnection() {
     if (socket_ >= 0) ::close(socket_);
@@ -61,6 +60,7 @@ class HttpConnection {
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
       if (sent <= 0) return false;
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
@@ -116,10 +116,22 @@ class HttpConnection {
   static Clock::time_point after(double seconds) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
+  /// A signal, a fuzzer's alarm say, ends the call alone: the connection comes about all the same.
+  bool connect(const sockaddr_in& address) {
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return true;
+    pollfd waiting = {.fd = socket_, .events = POLLOUT, .revents = 0};
+    int error = errno;
+    while (error == EINTR) {
+      if (::poll(&waiting, 1, -1) < 0) continue;
+      socklen_t length = sizeof(error);
+      ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &length);
+    }
+    return error == 0;
+  }
   bool read_some(Clock::time_point end) {
     pollfd waiting = {.fd = socket_, .events = POLLIN, .revents = 0};
     int ready = -1;
-    do {  // a signal, a fuzzer's alarm say, ends a wait
+    do {  // a signal ends a wait, too
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
       timed_out_ = left.count() <= 0;
       ready = timed_out_ ? 0 : ::poll(&waiting, 1, static_cast<int>(left.count()));

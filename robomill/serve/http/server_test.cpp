@@ -1,8 +1,10 @@
 #include "robomill/serve/http/server.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/time.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -58,6 +60,21 @@ TEST(HttpServer, GoesOnAfterAHandlerThatThrows) {
     EXPECT_NE(answer.body.find("\"hint\":null"), std::string::npos) << answer.body;
   }
   EXPECT_EQ(test::http_ask(http->port(), "GET", "/").status, 200);
+}
+
+TEST(HttpServer, AnswersWhileSignalsInterruptCalls) {
+  const auto http = server();
+  struct sigaction nothing = {}, before = {};
+  nothing.sa_handler = [](int) {};
+  ASSERT_EQ(sigaction(SIGALRM, &nothing, &before), 0);
+  const itimerval often = {.it_interval = {.tv_sec = 0, .tv_usec = 300}, .it_value = {.tv_sec = 0, .tv_usec = 300}};
+  const itimerval never = {};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  int answered = 0;
+  for (int i = 0; i < 2000; ++i) answered += test::http_ask(http->port(), "GET", "/").status == 200 ? 1 : 0;
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_EQ(answered, 2000);
 }
 
 TEST(HttpServer, SendsEachHeaderOfAStreamOnce) {
