@@ -194,6 +194,7 @@ class Definitions {
       case Holds::complex:
         return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
       case Holds::table:
+        if (key.table == nullptr) return {{"type", "object"}};
         return reference(*key.table);
     }
     if (std::isfinite(key.rule.lowest)) out[key.rule.above ? "exclusiveMinimum" : "minimum"] = key.rule.lowest;
@@ -287,8 +288,9 @@ void add_markdown(const TableInfo& table, const std::string& before, std::map<co
                               : key.lists > 0 && key.holds == Holds::table ? "[]"
                                                                            : "");
     std::string meaning = key.meaning;
-    const bool first = key.holds == Holds::table && seen.emplace(key.table, name).second;
-    if (key.holds == Holds::table && !first) meaning += fmt::format("; keys as of `{}`", seen.at(key.table));
+    const bool described = key.holds == Holds::table && key.table != nullptr;
+    const bool first = described && seen.emplace(key.table, name).second;
+    if (described && !first) meaning += fmt::format("; keys as of `{}`", seen.at(key.table));
     out += fmt::format("| `{}` | {} | {} | {} |\n", name, values_of(key), presence(key, table.use),
                        in_cell(std::move(meaning)));
     if (first) add_markdown(*key.table, name + ".", seen, out);

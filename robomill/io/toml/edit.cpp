@@ -229,6 +229,14 @@ std::string toml_quoted(std::string_view text) {
   return out + '"';
 }
 
+std::string toml_unquoted(std::string_view literal) {
+  if (literal.size() < 2 || literal.front() != '"' || literal.back() != '"') return std::string(literal);
+  if (literal.find('\\') == std::string_view::npos) return std::string(literal.substr(1, literal.size() - 2));
+  const toml::table root = parse_toml("value = " + std::string(literal), "value");
+  const auto* text = root.get("value")->as_string();
+  return text != nullptr ? text->get() : std::string(literal);
+}
+
 std::optional<std::string> setting_of(std::string_view document, std::string_view key) {
   const toml::table root = parse_toml(document, std::string(key));
   const toml::node* node = find_node(root, key);

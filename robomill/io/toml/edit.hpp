@@ -9,6 +9,8 @@ namespace robomill::io {
 
 /// A text as TOML writes it, in quotes.
 [[nodiscard]] std::string toml_quoted(std::string_view text);
+/// A text of one line as TOML writes it, without its quotes and escapes; any other value as it is.
+[[nodiscard]] std::string toml_unquoted(std::string_view literal);
 
 /// What a document has at a key, as it stands there: "3", "\"up\"", "[1, 2]"; nothing where it has no such key, or a
 /// table below a header.
