@@ -23,7 +23,7 @@ process::Cut cut_of(const process::ForcesFile& forces, bool with_cell) {
 
 }  // namespace
 
-process::ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
+process::ForcesResult run_forces(const io::TomlSource& forces, const std::filesystem::path& program,
                                  const std::filesystem::path& cell, Progress& progress) {
   using process::ForcesJob;
   const std::filesystem::path along = program.empty() ? process::program_of_job(forces) : program;

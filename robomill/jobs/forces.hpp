@@ -19,7 +19,7 @@ namespace robomill::jobs {
 /// @param program  empty: one revolution
 /// @param cell     empty: the one that forces.toml names, if any
 /// @throws InvalidInput with file, line, key and value; Interrupted
-[[nodiscard]] ROBOMILL_API process::ForcesResult run_forces(const std::filesystem::path& forces,
+[[nodiscard]] ROBOMILL_API process::ForcesResult run_forces(const io::TomlSource& forces,
                                                             const std::filesystem::path& program,
                                                             const std::filesystem::path& cell,
                                                             Progress& progress = Progress::none());

@@ -48,7 +48,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   require_modes_in_three_directions(cut);
   load_dynamics(cut, progress);
   cut.validate();
-  for (const std::filesystem::path& plan : jobs_of_cut(job.lobes)) {
+  for (const std::filesystem::path& plan : jobs_of_cut(job.lobes.path)) {
     if (!cut.job.empty()) break;
     if (const std::string text = other_structure_text(plan, cut); !text.empty()) cut.notes.push_back(text);
   }

@@ -1,11 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/stability/compare.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -18,7 +18,7 @@ namespace robomill::jobs {
 
 /// lobes.toml and what else to make of it.
 struct LobesJob {
-  std::filesystem::path lobes;  ///< lobes.toml
+  io::TomlSource lobes;  ///< lobes.toml
   /// Evaluated beside the chart. Where the file sweeps another parameter the second number is its value: in m, or 1e-3
   /// a degree.
   std::vector<stability::OperatingPoint> points = {};

@@ -162,7 +162,7 @@ void warn_of_edges(const process::ForcesFile& forces, PlanResult& result) {
 std::optional<cell::CellFile> cell_of(const Job& job) {
   if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
   io::require_file(job.cell);
-  cell::CellFile cell = cell::read_cell(job.file, job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
+  cell::CellFile cell = cell::read_cell(job.source(), job.forces.empty() ? cell::Robots::any : cell::Robots::serial);
   if (!job.near_deg.empty()) cell::ask_for_posture(cell, job.near_deg);
   return cell;
 }
@@ -184,7 +184,7 @@ void smooth(PlanResult& result, const cell::CellFile& cell, const std::filesyste
     smooth.options.output = folder / "trajectory.csv";
   }
   if (cell.geometry && !result.job.forces.empty()) {
-    smooth.options.cutter = process::read_forces(result.job.file, process::ForcesJob::program).cutter;
+    smooth.options.cutter = process::read_forces(result.job.source(), process::ForcesJob::program).cutter;
   }
   result.programmed.path = run_smooth(smooth, cell, progress);
 }
@@ -266,7 +266,7 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
   const bool along = !result.job.program.empty();
   io::require_file(result.job.forces);
   const process::ForcesFile file =
-      process::read_forces(result.job.file, along ? process::ForcesJob::program : process::ForcesJob::revolution);
+      process::read_forces(result.job.source(), along ? process::ForcesJob::program : process::ForcesJob::revolution);
   warn_of_edges(file, result);
   if (!result.job.judges_blocks()) {
     result.programmed.forces = run_forces(file, result.job.program, cell, progress);
@@ -287,7 +287,7 @@ void load_and_judge(PlanResult& result, const std::optional<cell::CellFile>& cel
 /// lobes.toml, and what a plan asks of it.
 void read_cut(PlanResult& result) {
   io::require_file(result.job.lobes);
-  result.cut = read_lobes(result.job.file);
+  result.cut = read_lobes(result.job.source());
   append(result.notes, result.cut.notes);
   append(result.warnings, io::take_warnings(result.notes));
   require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
@@ -340,7 +340,7 @@ void gather_assumed(PlanResult& result, const cell::Cell* cell) {
 
 }  // namespace
 
-PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
+PlanResult run_job(const io::TomlSource& job, std::uint64_t seed, Progress& progress,
                    const std::filesystem::path& folder, bool accept_fit, const std::vector<double>& near_deg) {
   PlanResult result;
   result.job = read_job(job);

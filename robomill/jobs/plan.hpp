@@ -89,7 +89,7 @@ inline constexpr std::uint64_t default_seed = 1;
 /// @param near_deg  joints of the cell's arm that a program begins near, in place of robot.start_joints_deg; empty:
 /// that
 /// @throws InvalidInput with file, line, key and value; Interrupted
-[[nodiscard]] ROBOMILL_API PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
+[[nodiscard]] ROBOMILL_API PlanResult run_job(const io::TomlSource& job, std::uint64_t seed,
                                               Progress& progress = Progress::none(),
                                               const std::filesystem::path& folder = {}, bool accept_fit = false,
                                               const std::vector<double>& near_deg = {});

@@ -52,7 +52,7 @@ void compare(TipPrediction& prediction, const coupling::Assembly& assembly, cons
 
 }  // namespace
 
-TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured,
+TipPrediction predict_tip(const io::TomlSource& assembly, const std::filesystem::path& measured,
                           const coupling::TipOptions& options, Progress& progress, const std::filesystem::path& joint,
                           TipUse use) {
   TipPrediction out;

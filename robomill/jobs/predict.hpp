@@ -41,7 +41,7 @@ enum class TipUse {
 /// @throws InvalidInput naming the file, as read_assembly, tip_frfs and read_frfs, or if nothing measured can be
 ///     compared
 /// @throws Interrupted when progress asks to stop
-[[nodiscard]] ROBOMILL_API TipPrediction predict_tip(const std::filesystem::path& assembly,
+[[nodiscard]] ROBOMILL_API TipPrediction predict_tip(const io::TomlSource& assembly,
                                                      const std::filesystem::path& measured = {},
                                                      const coupling::TipOptions& options = {},
                                                      Progress& progress = Progress::none(),

@@ -94,7 +94,7 @@ SimulateResult run_simulate(const SimulateJob& job, Progress& progress) {
       fit_where_measured(cut.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, progress);
   cut.validate();
   if (!cut.drilling && !(problem.milling.feed_per_tooth_m > 0.0)) {
-    throw InvalidInput(InvalidInput::Parts{.where = job.lobes.string(),
+    throw InvalidInput(InvalidInput::Parts{.where = job.lobes.path.string(),
                                            .field = "cut.feed_per_tooth_mm",
                                            .rule = "must be given and > 0",
                                            .hint = "Without feed nothing is cut"});

@@ -15,7 +15,7 @@ namespace robomill::jobs {
 
 /// A cut of lobes.toml at one speed and depth.
 struct SimulateJob {
-  std::filesystem::path lobes;      ///< lobes.toml
+  io::TomlSource lobes;             ///< lobes.toml
   stability::OperatingPoint point;  ///< of drilling the depth is the lips' radial width, from the pilot hole to the rim
   simulation::SimulationOptions options = {};
 };

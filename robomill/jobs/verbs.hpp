@@ -17,6 +17,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/page/report.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -97,13 +98,16 @@ struct ROBOMILL_API VerbJob {
   const Verb& verb;
   AskedBy asked_by = AskedBy::request;
   std::vector<std::filesystem::path> inputs = {};
-  std::filesystem::path output = {};      ///< empty: no file is written
-  io::Json options = io::Json::object();  ///< as checked_options() gives them
-  std::filesystem::path root = {};        ///< that paths in options are relative to
-  bool wants_json = false;                ///< the document as JSON too
-  bool wants_curves = false;              ///< of the page those that take long to record
+  std::filesystem::path output = {};           ///< empty: no file is written
+  io::Json options = io::Json::object();       ///< as checked_options() gives them
+  std::filesystem::path root = {};             ///< that paths in options are relative to
+  bool wants_json = false;                     ///< the document as JSON too
+  bool wants_curves = false;                   ///< of the page those that take long to record
+  std::vector<io::TomlSetting> settings = {};  ///< keys of its document that are set to other values
 
   [[nodiscard]] const std::filesystem::path& input() const { return inputs.front(); }
+  /// The document with its settings, of a verb that can vary.
+  [[nodiscard]] io::TomlSource source() const { return {input(), {}, settings}; }
   [[nodiscard]] bool has(const char* name) const { return options.contains(name); }
   template <class Value>
   [[nodiscard]] Value get(const char* name, const Value& otherwise) const {
@@ -156,6 +160,7 @@ struct Verb {
   std::optional<Document> document = {};        ///< none: a folder, or what the run itself knows the endings of
   std::string page::Report::*report = nullptr;  ///< the part of the page that --report FILE.json has; none: all
   bool computes = true;                         ///< has a page, and work that may take long
+  bool varies = false;                          ///< its run takes VerbJob::settings: a study can vary it
   std::vector<VerbOption> options = {};
   /// Does the work and writes the output. @throws InvalidInput, Interrupted. None: it is no job, see app/.
   Outcome (*run)(const VerbJob& job, Progress& progress) = nullptr;

@@ -139,7 +139,7 @@ void Job::validate() const {
 
 Job read_job(const io::TomlSource& source) {
   io::TomlFile file(source);
-  Job job{.file = source.path};
+  Job job{.file = source.path, .settings = source.settings};
   read_sources(file, job);
   for (const auto* table : {&decision::edges_table(), &decision::spindle_table(), &decision::safety_table()})
     table->read(file, table->info().name, job.recommend);

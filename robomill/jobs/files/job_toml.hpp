@@ -21,9 +21,10 @@ namespace robomill::jobs {
 /// tables. Exactly one of hits, frf, modes and assembly is given, or [dynamics] gives the structure; a job that judges
 /// blocks may have none of them, nor lobes.
 struct Job {
-  std::filesystem::path file = {};       ///< this one
-  std::vector<std::string> notes = {};   ///< sentences for the user
-  std::vector<Assumption> assumed = {};  ///< sample values
+  std::filesystem::path file = {};             ///< this one …
+  std::vector<io::TomlSetting> settings = {};  ///< … and keys of it that are set to other values
+  std::vector<std::string> notes = {};         ///< sentences for the user
+  std::vector<Assumption> assumed = {};        ///< sample values
   std::string title = {};
   std::filesystem::path hits = {}, modes = {}, lobes = {};
   std::filesystem::path assembly = {};  ///< whose tip is predicted …
@@ -50,6 +51,8 @@ struct Job {
   [[nodiscard]] bool has_structure() const {
     return !hits.empty() || !frf.empty() || !modes.empty() || !assembly.empty() || !own_modes.modes.empty();
   }
+  /// The document, for the readers of its other tables.
+  [[nodiscard]] io::TomlSource source() const { return {file, {}, settings}; }
   ROBOMILL_API void validate() const;
 };
 

@@ -19,7 +19,7 @@ VerbOption lobes_input() {
 Outcome run_lobes_verb(const VerbJob& job, Progress& progress) {
   return finished(
       job,
-      run_lobes({.lobes = job.input(), .points = job.points("at"), .compare = job.flag("compare"), .seed = job.seed()},
+      run_lobes({.lobes = job.source(), .points = job.points("at"), .compare = job.flag("compare"), .seed = job.seed()},
                 progress));
 }
 
@@ -32,7 +32,7 @@ Outcome run_postures_verb(const VerbJob& job, Progress& progress) {
 }
 
 Outcome run_simulate_verb(const VerbJob& job, Progress& progress) {
-  SimulateJob wanted = {.lobes = job.input(), .point = job.point("at")};
+  SimulateJob wanted = {.lobes = job.source(), .point = job.point("at")};
   wanted.options.seconds = job.get("seconds", wanted.options.seconds);
   wanted.options.sample_rate_hz = job.get("sample_rate_hz", wanted.options.sample_rate_hz);
   wanted.options.loss_of_contact = !job.flag("linear");
@@ -57,9 +57,10 @@ Outcome run_explain_verb(const VerbJob& job, Progress&) {
 }
 
 process::ForcesResult forces_from(const VerbJob& job, Progress& progress) {
-  if (!job.has("posture_deg")) return run_forces(job.input(), job.file("program"), job.file("cell"), progress);
-  const std::filesystem::path program = job.has("program") ? job.file("program") : process::program_of_job(job.input());
-  process::ForcesFile file = process::read_forces(job.input(), process::ForcesJob::program);
+  if (!job.has("posture_deg")) return run_forces(job.source(), job.file("program"), job.file("cell"), progress);
+  const std::filesystem::path program =
+      job.has("program") ? job.file("program") : process::program_of_job(job.source());
+  process::ForcesFile file = process::read_forces(job.source(), process::ForcesJob::program);
   if (job.has("cell")) file.cell = job.file("cell");
   if (file.cell.empty()) throw InvalidInput(job.named("posture_deg"), "goes with a robot", "Give " + job.named("cell"));
   cell::CellFile cell = cell::read_cell(file.cell);
@@ -136,6 +137,7 @@ Verb lobes_verb() {
           .input = lobes_input(),
           .output = "lobes.json",
           .document = Document::lobes,
+          .varies = true,
           .options = {plain_option("at",
                                    "points RPM,MM (degrees where an angle is swept): spectral radius there; may be "
                                    "repeated",
@@ -175,6 +177,7 @@ Verb simulate_verb() {
           .input = lobes_input(),
           .output = "vibration.csv",
           .document = Document::simulation,
+          .varies = true,
           .options = {{.name = "at",
                        .meaning = "RPM,MM: spindle speed and axial depth",
                        .takes = Takes::point,
@@ -281,6 +284,7 @@ Verb forces_verb() {
           .input = file_option("forces", "forces.toml, or a job.toml", {"forces", "job"}, true),
           .output = "forces.csv",
           .document = Document::forces,
+          .varies = true,
           .options = forces_options(),
           .run = &run_forces_verb};
 }

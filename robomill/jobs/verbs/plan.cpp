@@ -9,7 +9,7 @@ namespace {
 Outcome run_plan_verb(const VerbJob& job, Progress& progress) {
   const auto plan = with_posture(job, [&] {
     return std::make_shared<const PlanResult>(
-        run_job(job.input(), job.seed(), progress, job.output, job.flag("accept_fit"), job.numbers("posture_deg")));
+        run_job(job.source(), job.seed(), progress, job.output, job.flag("accept_fit"), job.numbers("posture_deg")));
   });
   if (!job.output.empty()) write_plan(job.output, *plan);
   return {.shortfall = reached(*plan) ? "" : "no conditions within every limit were found",
@@ -28,6 +28,7 @@ Verb plan_verb() {
           .readme = "robomill/jobs/README.md",
           .input = file_option("job", "job.toml", {"job"}, true),
           .output = "out",
+          .varies = true,
           .options = {flag_option("accept_fit", "go on with modes whose relative error is 20 % or more"),
                       posture_option(), seed_option()},
           .run = &run_plan_verb};

@@ -42,7 +42,7 @@ Outcome run_modes_verb(const VerbJob& job, Progress& progress) {
 }
 
 Outcome run_couple_verb(const VerbJob& job, Progress& progress) {
-  TipPrediction result = predict_tip(job.input(), {}, {.rotations = job.flag("rotations")}, progress);
+  TipPrediction result = predict_tip(job.source(), {}, {.rotations = job.flag("rotations")}, progress);
   if (job.has("holder_out")) {
     require_holder(result, job.named("holder_out"));
     modal::write_frfs(job.file("holder_out"), result.holder);
@@ -130,6 +130,7 @@ Verb couple_verb() {
           .input = assembly_input(),
           .output = "tip.uff",
           .document = Document::frfs,
+          .varies = true,
           .options = {flag_option("rotations", "also the rotations and moments at the tip"),
                       plain_option("holder_out",
                                    "keep the measured holder's receptances here, for every tool after: .uff .csv .mat "

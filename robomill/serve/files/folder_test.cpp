@@ -15,8 +15,8 @@
 #include "robomill/io/records/mat.hpp"
 #include "robomill/io/records/records.hpp"
 #include "robomill/io/system/confinement.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 #include "robomill/serve/files/inspect.hpp"
-#include "robomill/serve/files/named_files.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::serve {
@@ -96,16 +96,17 @@ TEST(NamedFiles, AreNotReadWithoutBound) {
     place.file(name, "a = 1\n");
     names += fmt::format("\"{}\", ", name);
     if (i != 50) continue;
-    EXPECT_EQ(files_named_in(place.file("few.toml", "a = [" + names + "]\n")).size(), 51U);
+    EXPECT_EQ(jobs::files_named_in(place.file("few.toml", "a = [" + names + "]\n")).size(), 51U);
   }
-  EXPECT_THROW(static_cast<void>(files_named_in(place.file("many.toml", "a = [" + names + "]\n"))), InvalidInput);
+  EXPECT_THROW(static_cast<void>(jobs::files_named_in(place.file("many.toml", "a = [" + names + "]\n"))), InvalidInput);
   const std::string long_one = "# " + std::string(1'000'000, '-') + "\n";
   std::string long_names;
   for (int i = 0; i < 10; ++i) {
     place.file(fmt::format("l{}.toml", i), long_one);
     long_names += fmt::format("\"l{}.toml\", ", i);
   }
-  EXPECT_THROW(static_cast<void>(files_named_in(place.file("long.toml", "a = [" + long_names + "]\n"))), InvalidInput);
+  EXPECT_THROW(static_cast<void>(jobs::files_named_in(place.file("long.toml", "a = [" + long_names + "]\n"))),
+               InvalidInput);
 }
 
 TEST(FileKindTest, FrfsWithoutAHeaderAreNoRecords) {

@@ -21,11 +21,11 @@
 #include "robomill/io/toml/values.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/process/files/forces_toml.hpp"
-#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -96,7 +96,7 @@ std::vector<Guess> guesses_of(const fs::path& file, const std::vector<Assumption
       return one.what == io::sample_left && one.key == key && one.file == file.filename().string();
     });
   };
-  for (const io::TomlValue& value : io::toml_values(io::read_file(file, longest_document), file.string())) {
+  for (const io::TomlValue& value : io::toml_values(io::read_file(file, jobs::longest_document), file.string())) {
     const std::string key = io::shown_key(value.key);
     if (is_sample(key) || (guessed && value.comment.find("guessed from") != std::string::npos)) {
       out.push_back({.key = key, .line = value.line});
@@ -132,7 +132,7 @@ class Reader {
  private:
   void open() {
     attempt(nullptr, [&] {
-      values_ = io::toml_values(io::read_file(job_, longest_document), job_.string());
+      values_ = io::toml_values(io::read_file(job_, jobs::longest_document), job_.string());
       for (const io::TomlValue& value : values_) {
         if (value.key.starts_with("job.")) parts_.names.push_back(value.key.substr(4));
       }

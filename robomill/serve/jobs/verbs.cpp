@@ -10,11 +10,11 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/system/output_places.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 #include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "robomill/page/report.hpp"
 #include "robomill/serve/files/folder.hpp"
-#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -100,7 +100,7 @@ void require_places_apart(const Places& places) {
   const io::OutputPlaces outputs(places.written);
   for (const fs::path& document : places.read) {
     io::require_no_output(document);
-    for (const fs::path& file : files_named_in(document)) io::require_no_output(file);
+    for (const fs::path& file : jobs::files_named_in(document)) io::require_no_output(file);
   }
 }
 

@@ -6,8 +6,8 @@
 
 #include "robomill/cell/files/cell_toml.hpp"
 #include "robomill/io/toml/file.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 #include "robomill/jobs/planned_cut.hpp"
-#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace fs = std::filesystem;
@@ -89,7 +89,7 @@ void DynamicsCache::load_plan(jobs::LobesFile& file, const fs::path& job, Progre
     known = planned_.end();
   }
   if (known == planned_.end()) {
-    Planned fresh{.job = job, .watched = files_named_in(job)};
+    Planned fresh{.job = job, .watched = jobs::files_named_in(job)};
     fresh.watched.push_back(job);
     fresh.stamps = stamps_of(fresh.watched);
     fresh.structure = std::make_shared<const jobs::PlanResult>(jobs::run_structure(job, jobs::default_seed, progress));

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "robomill/io/system/confinement.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 #include "robomill/serve/error_json.hpp"
 #include "robomill/serve/files/folder.hpp"
-#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -48,7 +48,7 @@ std::optional<NewerInput> newer_of(const std::vector<fs::path>& files, fs::file_
 /// A document with the files that it names.
 std::vector<fs::path> with_named(const fs::path& document) {
   if (document.empty()) return {};
-  std::vector<fs::path> out = files_named_in(document);
+  std::vector<fs::path> out = jobs::files_named_in(document);
   out.push_back(document);
   return out;
 }

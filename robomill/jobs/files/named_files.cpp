@@ -1,4 +1,4 @@
-#include "robomill/serve/files/named_files.hpp"
+#include "robomill/jobs/files/named_files.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml/values.hpp"
 
-namespace robomill::serve {
+namespace robomill::jobs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ std::vector<fs::path> files_named_in(const fs::path& document) {
   return std::move(found.files);
 }
 
-}  // namespace robomill::serve
+}  // namespace robomill::jobs

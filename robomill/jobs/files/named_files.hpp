@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-// Method: robomill/serve/README.md, "Jobs"
+// Method: robomill/jobs/README.md, "Files"
 
-namespace robomill::serve {
+namespace robomill::jobs {
 
 /// Of a TOML document that is read for what it names [byte].
 inline constexpr std::uintmax_t longest_document = std::uintmax_t{1} << 20;
@@ -15,4 +15,4 @@ inline constexpr std::uintmax_t longest_document = std::uintmax_t{1} << 20;
 /// @throws InvalidInput if they are too many: 64 documents, 8 MB of them, or 10,000 files
 [[nodiscard]] std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& document);
 
-}  // namespace robomill::serve
+}  // namespace robomill::jobs
