@@ -64,6 +64,8 @@
 #include "robomill/jobs/simulate.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/stiffness.hpp"
+#include "robomill/jobs/sweep.hpp"
+#include "robomill/jobs/sweep/study.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/live/act.hpp"
 #include "robomill/live/advisor.hpp"

@@ -235,6 +235,12 @@ Files inputs_of_verb(std::string_view verb) {
              "[job]\nforces = \"slot.toml\"\ncell = \"cell.toml\"\nprogram = \"slot.ngc\"\nmodes = \"modes.toml\"\n"
              "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 12000\n[decide]\nfree = [\"spindle_speed\"]\n"}};
   }
+  if (verb == "sweep") {
+    return {{"lobes.toml", lobes_toml()},
+            {"study.toml",
+             "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\ncollect = \"limit@7000\"\nchunk_points = 2\n"
+             "[[vary]]\nkey = \"cut.radial_depth_mm\"\nvalues = [1, 2, 3]\n"}};
+  }
   if (verb == "plan") {
     return {{"lobes.toml", lobes_toml()},
             {"modes.toml", modes_toml},
@@ -319,6 +325,7 @@ std::vector<Case> all_cases() {
       {"monitor a wav", "jsonl", "monitor monitor.toml --input cut.wav --every-window -o events.jsonl",
        "simulate lobes.toml --at 7000,0.5 --seconds 1 -o cut.wav --quiet", goes_on},
       {"calibrate", "toml and report json", "calibrate recordings.toml -o calibrated.toml --report report.json"},
+      {"sweep", "folder", "sweep study.toml -o study", "", is_new | hdf5},
       {"plan", "folder", "plan job.toml -o plan", "", together},
       {"plan", "new folder", "plan job.toml -o plan", "", is_new | together},
       {"plan a program", "folder", "plan job.toml -o plan", "", together},

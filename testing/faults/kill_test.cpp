@@ -38,7 +38,9 @@ TEST(Kill, LeavesOldOrNewFiles) {
   Random random(5);
   for (const Case& which : all_cases()) {
     const std::string name = std::string(which.verb) + " " + which.ending;
-    if (name != "plan folder" && name != "smooth h5" && name != "monitor recordings wav") continue;
+    if (name != "plan folder" && name != "smooth h5" && name != "monitor recordings wav" && name != "sweep folder") {
+      continue;
+    }
     const test::Folder folder;
     Place place({.robomill = ROBOMILL_PROGRAM, .shim = ROBOMILL_FAULT_SHIM}, folder.path());
     Judge judge(place, which);

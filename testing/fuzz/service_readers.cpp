@@ -12,9 +12,11 @@
 #include <variant>
 
 #include "app/stream/commands.hpp"
+#include "robomill/base/digest.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/shop_units.hpp"
 #include "robomill/io/si.hpp"
+#include "robomill/jobs/sweep/chunk.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
@@ -118,6 +120,14 @@ void read_frames(std::string_view bytes) {
   }
 }
 
+/// A chunk of a study, as it stands and under a digest that fits: what is read is written as it was.
+void read_study_chunk(std::string_view bytes) {
+  for (const std::string& chunk : {std::string(bytes), std::string(bytes) + digest_of(bytes)}) {
+    const std::optional<jobs::Chunk> read = jobs::read_chunk(chunk);
+    require(!read || jobs::chunk_bytes(*read) == chunk, "a chunk is written as it was read");
+  }
+}
+
 /// A server that takes bodies of 4 KiB and answers with them.
 serve::HttpServer& server() {
   static serve::HttpServer made({.header_bytes = 4096});
@@ -147,12 +157,13 @@ void read_http(std::string_view bytes) {
   require(test::http_ask(server().port(), "GET", "/").status == 200, "the server goes on");
 }
 
-constexpr std::array<Reader, 6> all = {{
+constexpr std::array<Reader, 7> all = {{
     {"stream_block", read_stream_block},
     {"commands", read_commands},
     {"words", read_words},
     {"body", read_body},
     {"frames", read_frames},
+    {"chunk", read_study_chunk},
     {"http", read_http},
 }};
 

@@ -46,6 +46,7 @@ std::span<const Verb> verbs() {
     add(cut_verbs());
     add(robot_verbs());
     out.push_back(calibrate_verb());
+    out.push_back(sweep_verb());
     return out;
   }();
   return all;

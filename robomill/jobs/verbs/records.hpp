@@ -15,6 +15,7 @@ namespace robomill::jobs {
 [[nodiscard]] std::vector<Verb> cut_verbs();        ///< stability, motion and forces of a cut
 [[nodiscard]] std::vector<Verb> robot_verbs();      ///< the robot under load, and along a program
 [[nodiscard]] Verb calibrate_verb();
+[[nodiscard]] Verb sweep_verb();
 
 [[nodiscard]] inline VerbOption seed_option() {
   return whole_option("seed", "seed of random numbers (default: 1)", 0);

@@ -8,6 +8,7 @@
 #include "robomill/io/toml_source.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
@@ -24,7 +25,7 @@ void read_job_and_cut(const io::TomlSource& source) {
   if (job.lobes == source.path) static_cast<void>(jobs::read_lobes(source));
 }
 
-constexpr std::array<std::pair<std::string_view, Read>, 8> readers = {{
+constexpr std::array<std::pair<std::string_view, Read>, 9> readers = {{
     {"job", read_job_and_cut},
     {"hits", [](const io::TomlSource& source) { (void)modal::read_hits(source); }},
     {"lobes", [](const io::TomlSource& source) { (void)jobs::read_lobes(source); }},
@@ -33,6 +34,7 @@ constexpr std::array<std::pair<std::string_view, Read>, 8> readers = {{
     {"assembly", [](const io::TomlSource& source) { (void)coupling::read_assembly(source); }},
     {"monitor", [](const io::TomlSource& source) { (void)monitor::read_monitor(source); }},
     {"recordings", [](const io::TomlSource& source) { (void)monitor::read_recordings(source); }},
+    {"study", [](const io::TomlSource& source) { (void)jobs::read_study(source); }},
 }};
 
 }  // namespace

@@ -1,0 +1,177 @@
+#include "robomill/jobs/files/study_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "robomill/base/digest.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/table.hpp"
+#include "robomill/io/toml/edit.hpp"
+#include "robomill/io/toml/file.hpp"
+#include "robomill/io/toml/values.hpp"
+#include "robomill/jobs/files/named_files.hpp"
+#include "robomill/jobs/files/study_schema.hpp"
+#include "robomill/version.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using io::declared;
+using io::Holds;
+using io::key;
+
+constexpr std::size_t longest_file_name = 1024;
+
+/// A cell of a table, as TOML writes it.
+std::string literal_of(std::string_view cell) {
+  return io::parse_cell(cell) ? fmt::format("{}", *io::parse_cell(cell)) : io::toml_quoted(cell);
+}
+
+void read_values(io::TomlFile& file, const std::string& path, Variation& out) {
+  if (!file.has(path)) return;
+  std::vector<std::string> texts;
+  if (file.is_number(path) || file.is_number(path + "[0]")) {
+    std::vector<double> numbers;
+    file.numbers(path, {}, 1.0, numbers);
+    for (const double number : numbers) texts.push_back(fmt::format("{}", number));
+  } else {
+    file.texts(path, texts);
+    for (std::string& text : texts) text = io::toml_quoted(text);
+  }
+  if (texts.empty()) throw file.reject(path, "must not be empty");
+  for (std::string& text : texts) out.values.push_back({std::move(text)});
+}
+
+void read_table(io::TomlFile& file, const std::string& path, Variation& out) {
+  std::filesystem::path table_path;
+  if (!file.path(path, table_path)) return;
+  std::vector<std::string> warnings;
+  const io::TextTable table = io::parse_text_table(io::read_file(table_path), table_path.string(), warnings);
+  out.keys = table.names;
+  for (const io::TextTable::Row& row : table.rows) {
+    std::vector<std::string>& cells = out.values.emplace_back();
+    for (const std::string& field : row.fields) cells.push_back(literal_of(field));
+  }
+}
+
+void require_one_of(io::TomlFile& file, const std::string& row) {
+  const int given =
+      (file.has(row + ".values") ? 1 : 0) + (file.has(row + ".range") ? 1 : 0) + (file.has(row + ".table") ? 1 : 0);
+  if (given != 1)
+    throw file.reject(row, "must have values, range or table", given == 0 ? "None is given" : "Several are given");
+  if (file.has(row + ".table") == file.has(row + ".key")) {
+    throw file.reject(row, "must have a key, or a table whose columns are keys");
+  }
+  for (const char* word : {"count", "sampling"}) {
+    if (file.has(row + "." + word) && !file.has(row + ".range")) throw file.reject(row + "." + word, "goes with range");
+  }
+}
+
+/// Options of the job as its requests have them.
+std::string options_of(io::TomlFile& file) {
+  const std::string table = "study.options";
+  if (!file.has(table)) return {};
+  file.skip(table);
+  io::Json out = io::Json::object();
+  for (const io::TomlText& text : file.texts()) {
+    for (io::TomlValue& value : io::toml_values(text.content, text.path.string())) {
+      if (value.key.starts_with(table + ".")) out[value.key.substr(table.size() + 1)] = std::move(value.value);
+    }
+  }
+  return io::plain_text(out);
+}
+
+/// A file, and the files that it names, by their content.
+void add_file(const std::filesystem::path& file, Digest& digest) {
+  digest.text(io::read_file(file));
+  for (const std::filesystem::path& named : files_named_in(file)) digest.text(io::read_file(named));
+}
+
+/// Files that the values of keys name: their paths are relative to the base document.
+void add_files_of_values(const Study& study, Digest& digest) {
+  const std::filesystem::path folder = study.base.parent_path();
+  std::error_code ignored;
+  for (const Variation& one : study.vary) {
+    for (const std::vector<std::string>& row : one.values) {
+      for (const std::string& literal : row) {
+        const std::string text = io::toml_unquoted(literal);
+        if (text == literal || text.empty() || text.size() > longest_file_name) continue;
+        if (std::filesystem::is_regular_file(folder / text, ignored)) add_file(folder / text, digest);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+const io::Schema<Study>& study_table() {
+  static const io::Schema<Study> table(
+      "study", "a job that is done again and again, with other values of some keys of its document",
+      {key("job", &Study::job, "the verb: lobes, simulate, forces, couple, plan").required(),
+       key("base", &Study::base, "its document, whose keys vary").required(),
+       key("collect", &Study::collect,
+           "what is kept of each result: limit@RPM [mm], chatter_frequency@RPM [Hz] and abs_mu@RPM,MM of lobes, or a "
+           "path "
+           "in the verb's JSON document: recommended.removal_rate_mm3_per_s")
+           .or_one()
+           .required(),
+       declared<Study>("options", Holds::table,
+                       "of the job, as its requests have them; paths are relative to this file: at = [8000, 0.5]"),
+       key("seed", &Study::seed, "of samples; 1 where it is absent").at_least(0.0),
+       key("chunk_points", &Study::chunk_points, "points that are done together; 0: as many as take a minute")
+           .at_least(0.0)});
+  return table;
+}
+
+const io::Schema<Variation>& vary_table() {
+  static const io::Schema<Variation> table(
+      "vary", "a key, or several together, and the values that they take; the last changes fastest",
+      {declared<Variation>("key", Holds::text, "of the base document: cut.radial_depth_mm")
+           .read_by([](io::TomlFile& file, const std::string& path, Variation& out) {
+             std::string text;
+             if (file.text(path, text)) out.keys = {std::move(text)};
+           }),
+       declared<Variation>("values", Holds::number, "numbers or texts, one after the other", 1)
+           .or_also(Holds::text)
+           .or_one()
+           .read_by(read_values),
+       key("range", &Variation::range, "or from, to, in the key's unit").no_default().entries(2),
+       key("count", &Variation::count, "values in the range").at_least(0.0),
+       key("sampling", &Variation::sampling, sampling_names,
+           "evenly, by Latin hypercube or by Sobol' sequence; keys sampled in one way are sampled together"),
+       declared<Variation>("table", Holds::path, "or a CSV file: its columns are keys, its rows their values")
+           .read_by(read_table)});
+  return table;
+}
+
+Study read_study(const io::TomlSource& source) {
+  io::TomlFile file(source);
+  Study out{.file = source.path};
+  study_table().read(file, "study", out);
+  out.options = options_of(file);
+  if (file.tables("vary") == 0) file.require("vary", "Write [[vary]] above each key");
+  for (std::size_t i = 0; i < file.tables("vary"); ++i) {
+    const std::string row = fmt::format("vary[{}]", i);
+    require_one_of(file, row);
+    vary_table().read(file, row, out.vary.emplace_back(), row + ".");
+  }
+  out.notes = file.done();
+  file.locate([&] { out.validate(); });
+  return out;
+}
+
+std::string fingerprint_of(const Study& study) {
+  Digest digest;
+  digest.text(ROBOMILL_VERSION);
+  add_file(study.file, digest);
+  add_file(study.base, digest);
+  add_files_of_values(study, digest);
+  return digest.hex();
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,142 @@
+#include "robomill/jobs/files/sweep_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/json.hpp"
+#include "robomill/io/text.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+constexpr const char* plan_name = "study.json";
+
+SweepPlan read_plan(const std::filesystem::path& path) {
+  const io::Json json = io::read_json(path);
+  const io::JsonNode root(json, path.string());
+  const auto texts = [&](const char* name) {
+    const io::JsonNode list = root.at(name);
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < list.size(); ++i) out.push_back(list.at(i).text());
+    return out;
+  };
+  const auto count = [&](const char* name) {
+    const double number = root.at(name).number();
+    if (!(number >= 1.0 && number <= 1e9)) throw root.at(name).reject("must be a count");
+    return static_cast<std::uint64_t>(number);
+  };
+  return {.fingerprint = root.at("fingerprint").text(),
+          .points = count("points"),
+          .chunk_points = count("chunk_points"),
+          .keys = texts("keys"),
+          .collect = texts("collect")};
+}
+
+}  // namespace
+
+const io::Schema<SweepPlan>& sweep_plan_table() {
+  static const io::Schema<SweepPlan> table(
+      "study", "how a study is parted into chunks",
+      {io::key("fingerprint", &SweepPlan::fingerprint,
+               "of the study, the documents and files that it names, and the version: another one is another study"),
+       io::key("points", &SweepPlan::points, "of the study"),
+       io::key("chunk_points", &SweepPlan::chunk_points, "points of a chunk; the last may have fewer"),
+       io::key("keys", &SweepPlan::keys, "that vary"),
+       io::key("collect", &SweepPlan::collect, "what is kept of each point")},
+      io::Use::written, 1);
+  return table;
+}
+
+std::string this_processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("model name")) continue;
+    return std::string(io::trimmed(std::string_view(line).substr(std::min(line.find(':') + 1, line.size()))));
+  }
+  return {};
+}
+
+SweepPlan SweepFolder::begin(SweepPlan plan, const std::function<std::uint64_t()>& chunk_points) const {
+  io::make_folder(folder_ / "chunks");
+  const io::FileLock lock = io::FileLock::take(at(".plan.lock"), io::FileLock::Kind::exclusive);
+  const std::filesystem::path path = at(plan_name);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    plan.chunk_points = std::clamp<std::uint64_t>(chunk_points(), 1, plan.points);
+    io::write_file(path, io::dump(sweep_plan_table().write(plan)));
+    return plan;
+  }
+  SweepPlan there = read_plan(path);
+  require_same(there, plan);
+  return there;
+}
+
+void SweepFolder::require_same(const SweepPlan& there, const SweepPlan& asked) const {
+  if (there.fingerprint != asked.fingerprint) {
+    throw InvalidInput(
+        folder_.string(), "is of another study",
+        "The study, a document or a file that it names, or robomill has changed since; give another folder");
+  }
+  if (there.points != asked.points || there.keys != asked.keys || there.collect != asked.collect) {
+    throw InvalidInput(at(plan_name).string(), "does not fit its study", "It was changed, or damaged");
+  }
+}
+
+SweepPlan SweepFolder::plan() const {
+  std::error_code ignored;
+  if (!std::filesystem::exists(at(plan_name), ignored)) {
+    throw InvalidInput(folder_.string(), "has no study.json", "No run of a study has begun there");
+  }
+  return read_plan(at(plan_name));
+}
+
+SweepFolder::Locks SweepFolder::lock(int shard, int shards) const {
+  using Kind = io::FileLock::Kind;
+  Locks out;
+  out.all = io::FileLock::try_take(at(".run.lock"), shards == 1 ? Kind::exclusive : Kind::shared);
+  if (out.all && shards > 1) {
+    out.own = io::FileLock::try_take(at(fmt::format(".shard-{}-of-{}.lock", shard, shards)), Kind::exclusive);
+  }
+  if (!out.all || (shards > 1 && !out.own)) {
+    throw InvalidInput(folder_.string(), "is being worked on by another run",
+                       "robomill sweep STUDY -o FOLDER --status shows how far it is");
+  }
+  return out;
+}
+
+std::filesystem::path SweepFolder::file_of(std::uint64_t chunk) const {
+  return folder_ / "chunks" / fmt::format("{:07}.chunk", chunk);
+}
+
+SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk, Chunk& out) const {
+  const std::filesystem::path path = file_of(chunk);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return Found::missing;
+  std::optional<Chunk> read;
+  try {
+    read = read_chunk(io::read_file(path));
+  } catch (const InvalidInput&) {  // empty
+  }
+  const bool fits = read && read->fingerprint == plan.fingerprint && read->first == plan.first_of(chunk) &&
+                    read->points.size() == plan.size_of(chunk) &&
+                    read->points.front().values.size() == plan.collect.size();
+  if (!fits) return Found::damaged;
+  out = *std::move(read);
+  return Found::there;
+}
+
+void SweepFolder::save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const {
+  io::write_file(file_of(chunk), chunk_bytes({.fingerprint = plan.fingerprint,
+                                              .processor = this_processor(),
+                                              .first = plan.first_of(chunk),
+                                              .points = points}));
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,72 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/io/schema.hpp"
+#include "robomill/io/system/file_lock.hpp"
+#include "robomill/jobs/sweep/chunk.hpp"
+
+// Method: robomill/jobs/README.md, "Studies (`sweep.hpp`)"
+
+namespace robomill::jobs {
+
+/// study.json: how a study is parted.
+struct SweepPlan {
+  std::string fingerprint = {};  ///< of the study (fingerprint_of)
+  std::uint64_t points = 0, chunk_points = 0;
+  std::vector<std::string> keys = {}, collect = {};
+
+  [[nodiscard]] std::uint64_t chunks() const { return (points + chunk_points - 1) / chunk_points; }
+  [[nodiscard]] std::uint64_t first_of(std::uint64_t chunk) const { return chunk * chunk_points; }
+  [[nodiscard]] std::uint64_t size_of(std::uint64_t chunk) const {
+    return std::min(chunk_points, points - first_of(chunk));
+  }
+};
+
+[[nodiscard]] const io::Schema<SweepPlan>& sweep_plan_table();
+
+/// Of the machine: "Intel(R) Xeon(R) …"; empty where it does not say.
+[[nodiscard]] std::string this_processor();
+
+/// A study's folder: study.json, and a file a chunk that is done, each whole or absent.
+class SweepFolder {
+ public:
+  explicit SweepFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The plan that stands there; else this one, with as many points in a chunk as are asked for then. Of processes that
+  /// begin at the same time one writes it.
+  /// @throws InvalidInput if the folder is of another study, or cannot be written
+  [[nodiscard]] SweepPlan begin(SweepPlan plan, const std::function<std::uint64_t()>& chunk_points) const;
+  /// @throws InvalidInput if there is none
+  [[nodiscard]] SweepPlan plan() const;
+  /// @throws InvalidInput if the plan that stands there is not of this study, or is damaged
+  void require_same(const SweepPlan& there, const SweepPlan& asked) const;
+
+  /// While a run lives: of the chunks i, i + n, … alone where it is the i-th of n; of all where n is 1.
+  struct Locks {
+    std::optional<io::FileLock> all = {}, own = {};
+  };
+  /// @param shard  from 1. @throws InvalidInput where another run has some of these chunks
+  [[nodiscard]] Locks lock(int shard, int shards) const;
+
+  enum class Found {
+    missing,
+    damaged,  ///< or of another study
+    there
+  };
+  [[nodiscard]] Found find(const SweepPlan& plan, std::uint64_t chunk, Chunk& out) const;
+  void save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const;
+
+  [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_ / name; }
+
+ private:
+  [[nodiscard]] std::filesystem::path file_of(std::uint64_t chunk) const;
+  std::filesystem::path folder_;
+};
+
+}  // namespace robomill::jobs

@@ -1,0 +1,104 @@
+#include "robomill/jobs/files/sweep_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/csv.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/key_unit.hpp"
+#include "robomill/io/records/hdf5_table.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/io/toml/edit.hpp"
+#include "robomill/jobs/sweep/evaluate.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// @param take  of each point: its number, what the keys are set to, what became of it
+void for_each_point(const SweepPlan& plan, const StudyPoints& points, const SweepFolder& folder,
+                    const std::function<void(const std::vector<std::string>&, const PointOutcome&)>& take) {
+  Chunk chunk;
+  for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+    if (folder.find(plan, i, chunk) != SweepFolder::Found::there) {
+      throw InvalidInput(folder.at("chunks").string(), fmt::format("chunk {} is missing or damaged", i),
+                         "Run the study again");
+    }
+    for (std::size_t k = 0; k < chunk.points.size(); ++k) take(points.values(plan.first_of(i) + k), chunk.points[k]);
+  }
+}
+
+void write_csv(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
+               const SweepFolder& folder) {
+  io::LineFile out(path);
+  std::string line;
+  for (const std::vector<std::string>* names : {&plan.keys, &plan.collect}) {
+    for (const std::string& name : *names) line += io::csv_text(name) + ',';
+  }
+  out.write(line + "state\n");
+  for_each_point(plan, points, folder, [&](const std::vector<std::string>& values, const PointOutcome& point) {
+    line.clear();
+    for (const std::string& value : values)
+      line += (io::parse_number(value) ? value : io::csv_text(io::toml_unquoted(value))) + ',';
+    for (const double value : point.values) line += std::isnan(value) ? "," : fmt::format("{},", value);
+    line.append(name_in(point_state_names, point.state)) += '\n';
+    out.write(line);
+  });
+  out.close();
+}
+
+/// Which keys have a value that is no number, and the longest text of each; 0: numbers alone.
+std::vector<std::size_t> longest_texts(const StudyPoints& points) {
+  std::vector<std::size_t> out(points.keys().size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::vector<std::string> values = points.values(i);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (!io::parse_number(values[k])) out[k] = std::max(out[k], io::toml_unquoted(values[k]).size());
+    }
+  }
+  return out;
+}
+
+void write_hdf5(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
+                const SweepFolder& folder) {
+  using Kind = io::Hdf5Table::Kind;
+  io::Hdf5Table table(path);
+  table.attribute("document", sweep_plan_table().info().document());
+  table.attribute("fingerprint", plan.fingerprint);
+  const std::vector<std::size_t> longest = longest_texts(points);
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    table.column(plan.keys[k], io::unit_of_key(plan.keys[k]), longest[k] > 0 ? Kind::text : Kind::real, longest[k]);
+  }
+  for (const std::string& name : plan.collect) table.column(name, unit_of_collected(name));
+  table.column("state", "", Kind::text, 8);
+  for_each_point(plan, points, folder, [&](const std::vector<std::string>& values, const PointOutcome& point) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (longest[k] > 0)
+        table.put(io::toml_unquoted(values[k]));
+      else
+        table.put(*io::parse_number(values[k]));
+    }
+    for (const double value : point.values) table.put(value);
+    table.put(name_in(point_state_names, point.state));
+    table.end_row();
+  });
+  table.finish().commit();
+}
+
+}  // namespace
+
+void write_sweep_table(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
+                       const SweepFolder& folder) {
+  const std::string ending = io::lowered(path.extension().string());
+  if (ending == ".csv") return write_csv(path, plan, points, folder);
+  if (ending == ".h5" || ending == ".hdf5") return write_hdf5(path, plan, points, folder);
+  throw InvalidInput(path.string(), "must end in .h5, .hdf5 or .csv");
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,215 @@
+#include "robomill/jobs/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/jobs/files/study_toml.hpp"
+#include "robomill/jobs/files/sweep_folder.hpp"
+#include "robomill/jobs/files/sweep_tables.hpp"
+#include "robomill/jobs/sweep/evaluate.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Of one thread. A chunk is what a run that is killed loses at most.
+constexpr double chunk_s = 60.0;
+constexpr std::size_t most_chunk_points = 100'000, most_reasons = 5, most_processors = 20;
+
+void add_once(std::vector<std::string>& to, const std::string& text, std::size_t most) {
+  if (!text.empty() && to.size() < most && std::ranges::find(to, text) == to.end()) to.push_back(text);
+}
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void count_state(PointState state, SweepResult& result) {
+  (state == PointState::done ? result.done : state == PointState::short_of ? result.short_of : result.rejected) += 1;
+}
+
+/// What the points that are done so far say of each value that is collected.
+class Seen {
+ public:
+  explicit Seen(const std::vector<std::string>& collect) : names_(collect), seen_(collect.size(), false) {}
+  void count(const Chunk& chunk, SweepResult& result) {
+    for (const PointOutcome& point : chunk.points) {
+      count_state(point.state, result);
+      add_once(result.reasons, point.reason, most_reasons);
+      for (std::size_t i = 0; i < names_.size(); ++i) seen_[i] = seen_[i] || !std::isnan(point.values[i]);
+    }
+    add_once(result.processors, chunk.processor, most_processors);
+  }
+  [[nodiscard]] std::vector<std::string> absent() const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (!seen_[i]) out.push_back(names_[i]);
+    }
+    return out;
+  }
+
+ private:
+  const std::vector<std::string>& names_;
+  std::vector<bool> seen_;
+};
+
+class Sweep {
+ public:
+  Sweep(const SweepJob& job, Progress& progress)
+      : job_(job),
+        progress_(progress),
+        study_(read_study(job.study)),
+        points_(study_),
+        evaluator_(study_),
+        folder_(job.folder) {
+    result_.study = study_;
+    result_.points = points_.size();
+  }
+
+  SweepResult run() {
+    if (job_.dry_run) {
+      try_one();
+      return std::move(result_);
+    }
+    SweepPlan plan = {.fingerprint = fingerprint_of(study_),
+                      .points = points_.size(),
+                      .keys = points_.keys(),
+                      .collect = study_.collect};
+    if (job_.status) {
+      const SweepPlan there = folder_.plan();
+      folder_.require_same(there, plan);
+      plan = there;
+    } else {
+      plan = folder_.begin(std::move(plan), [this] { return chunk_points(); });
+      const SweepFolder::Locks locks = folder_.lock(job_.shard, job_.shards);
+      do_chunks(plan);
+    }
+    result_.chunks = plan.chunks();
+    result_.chunk_points = plan.chunk_points;
+    look_at(plan);
+    if (!job_.status) write_tables(plan);
+    return std::move(result_);
+  }
+
+ private:
+  /// A point in the middle, since those at the edges may be out of range.
+  /// @return the seconds that it took
+  double measure(PointOutcome& outcome) {
+    const Clock::time_point begin = Clock::now();
+    outcome = evaluator_.at(points_.settings(points_.size() / 2), progress_);
+    return seconds_since(begin);
+  }
+
+  void try_one() {
+    PointOutcome outcome;
+    result_.point_s = measure(outcome);
+    add_once(result_.reasons, outcome.reason, most_reasons);
+    count_state(outcome.state, result_);
+    for (std::size_t i = 0; i < outcome.values.size(); ++i) {
+      if (std::isnan(outcome.values[i])) result_.absent.push_back(study_.collect[i]);
+    }
+  }
+
+  std::uint64_t chunk_points() {
+    if (study_.chunk_points > 0) return static_cast<std::uint64_t>(study_.chunk_points);
+    PointOutcome ignored;
+    const double points = chunk_s / std::max(measure(ignored), 1e-6);
+    return static_cast<std::uint64_t>(std::clamp(points, 1.0, static_cast<double>(most_chunk_points)));
+  }
+
+  /// The chunks of this shard that are not done.
+  std::vector<std::uint64_t> missing_chunks(const SweepPlan& plan) {
+    std::vector<std::uint64_t> out;
+    Chunk there;
+    const auto step = static_cast<std::uint64_t>(job_.shards);
+    for (auto chunk = static_cast<std::uint64_t>(job_.shard - 1); chunk < plan.chunks(); chunk += step) {
+      const SweepFolder::Found found = folder_.find(plan, chunk, there);
+      if (found == SweepFolder::Found::there) continue;
+      if (found == SweepFolder::Found::damaged) result_.damaged.push_back(chunk);
+      out.push_back(chunk);
+    }
+    return out;
+  }
+
+  void do_chunks(const SweepPlan& plan) {
+    const std::vector<std::uint64_t> missing = missing_chunks(plan);
+    std::uint64_t points = 0;
+    for (const std::uint64_t chunk : missing) points += plan.size_of(chunk);
+    progress_.start("points", points);
+    const Clock::time_point begin = Clock::now();
+    for (const std::uint64_t chunk : missing) {
+      folder_.save(plan, chunk, outcomes_of(plan, chunk));
+      ++result_.ran_chunks;
+    }
+    if (points == 0) return;
+    result_.point_s = seconds_since(begin) * std::max(thread_count(), 1) / static_cast<double>(points);
+  }
+
+  std::vector<PointOutcome> outcomes_of(const SweepPlan& plan, std::uint64_t chunk) {
+    const std::uint64_t first = plan.first_of(chunk);
+    std::vector<PointOutcome> out(plan.size_of(chunk));
+    parallel_for(out.size(), 1, [&](std::size_t from, std::size_t to) {
+      const ThreadLimit alone(1);
+      for (std::size_t i = from; i < to; ++i) {
+        Progress inside([this](const std::string&, double) { progress_.check(); }, nullptr);
+        out[i] = evaluator_.at(points_.settings(first + i), inside);
+        progress_.advance();
+      }
+    });
+    return out;
+  }
+
+  void look_at(const SweepPlan& plan) {
+    Seen seen(plan.collect);
+    Chunk chunk;
+    for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+      if (folder_.find(plan, i, chunk) != SweepFolder::Found::there) continue;
+      ++result_.done_chunks;
+      seen.count(chunk, result_);
+    }
+    if (result_.done_chunks > 0) result_.absent = seen.absent();
+  }
+
+  void write_tables(const SweepPlan& plan) {
+    std::vector<std::filesystem::path> tables;
+    if (!job_.merge.empty()) tables.push_back(job_.merge);
+    if (job_.merge.empty() && result_.complete() && job_.shards == 1)
+      tables = {folder_.at("results.csv"), folder_.at("results.h5")};
+    if (tables.empty()) return;
+    if (!result_.complete()) {
+      throw InvalidInput(job_.merge.string(),
+                         fmt::format("needs all chunks: {} of {} are done", result_.done_chunks, result_.chunks),
+                         "Run the other shards first");
+    }
+    for (const std::filesystem::path& table : tables) {
+      write_sweep_table(table, plan, points_, folder_);
+      result_.written.push_back(table.string());
+    }
+  }
+
+  const SweepJob& job_;
+  Progress& progress_;
+  Study study_;
+  StudyPoints points_;
+  Evaluator evaluator_;
+  SweepFolder folder_;
+  SweepResult result_;
+};
+
+}  // namespace
+
+SweepResult run_sweep(const SweepJob& job, Progress& progress) {
+  if (job.shards < 1 || job.shard < 1 || job.shard > job.shards) {
+    throw InvalidInput("shard", job.shard, "", fmt::format("must lie between 1 and {}", std::max(job.shards, 1)));
+  }
+  return Sweep(job, progress).run();
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/jobs/sweep/study.hpp"
+
+// Method: robomill/jobs/README.md, "Studies (`sweep.hpp`)"
+
+namespace robomill::jobs {
+
+/// study.toml and the folder that it is done in.
+struct SweepJob {
+  std::filesystem::path study = {};   ///< study.toml
+  std::filesystem::path folder = {};  ///< is made; goes on where a run ended before
+  /// This run does the chunks shard, shard + shards, …: 1 <= shard <= shards.
+  int shard = 1, shards = 1;
+  std::filesystem::path merge = {};  ///< a table of all points, .h5 or .csv, once all are done; empty: none
+  bool dry_run = false;              ///< one point, and what all would take: nothing is written
+  bool status = false;               ///< how far the folder is: nothing is done
+};
+
+/// How far a study is.
+struct SweepResult {
+  Study study = {};
+  std::uint64_t points = 0, chunks = 0, chunk_points = 0;
+  std::uint64_t done_chunks = 0, ran_chunks = 0;       ///< in the folder; by this run
+  std::uint64_t done = 0, short_of = 0, rejected = 0;  ///< points in the folder, by what became of them
+  std::vector<std::uint64_t> damaged = {};             ///< chunks that were damaged, and are done again
+  std::vector<std::string> reasons = {};               ///< of points that are not done: the first five, each once
+  std::vector<std::string> processors = {};            ///< kinds that worked; of several the last bits may differ
+  std::vector<std::string> absent = {};                ///< what is collected and no point has
+  double point_s = 0.0;                                ///< that a point took here, of one thread [s]; 0: none was done
+  std::vector<std::string> written = {};               ///< files
+
+  [[nodiscard]] bool complete() const { return chunks > 0 && done_chunks == chunks; }
+};
+
+/// Does a study, chunk by chunk, each on all threads; what is there already stays. Results do not depend on threads,
+/// shards or what was interrupted: the same bytes on one kind of processor.
+/// @throws InvalidInput with file, line, key and value; if the folder is of another study, another run has the same
+///     chunks, or a table is asked for before all chunks are done
+/// @throws Interrupted  when progress asks to stop: whole chunks stay
+[[nodiscard]] ROBOMILL_API SweepResult run_sweep(const SweepJob& job, Progress& progress = Progress::none());
+
+}  // namespace robomill::jobs

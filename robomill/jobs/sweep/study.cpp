@@ -1,0 +1,197 @@
+#include "robomill/jobs/sweep/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+constexpr double most_points = 1e9;
+/// Of keys: they are kept as text.
+constexpr int most_values = 10'000'000;
+/// Fewer than the Sobol' sequence has dimensions.
+constexpr std::size_t most_keys = 1000;
+
+std::string number_text(double value) {
+  return fmt::format("{}", value);
+}
+
+double between(const std::array<double, 2>& range, double share) {
+  return range[0] + (range[1] - range[0]) * share;
+}
+
+std::vector<std::vector<std::string>> grid_rows(const Variation& one) {
+  std::vector<std::vector<std::string>> rows;
+  rows.reserve(static_cast<std::size_t>(one.count));
+  for (int i = 0; i < one.count; ++i) {
+    rows.push_back({number_text(i + 1 == one.count ? one.range[1] : between(one.range, i / (one.count - 1.0)))});
+  }
+  return rows;
+}
+
+/// Shares in [0, 1): a row a sample, a column a key.
+std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t keys, std::uint64_t seed) {
+  std::vector<std::vector<double>> rows(count, std::vector<double>(keys));
+  for (std::size_t k = 0; k < keys; ++k) {
+    Random random(seed, k);
+    std::vector<std::size_t> parts(count);
+    std::iota(parts.begin(), parts.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) std::swap(parts[i - 1], parts[random.index(i)]);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i][k] = (static_cast<double>(parts[i]) + random.uniform()) / static_cast<double>(count);
+    }
+  }
+  return rows;
+}
+
+/// The same by the sequence, each key shifted by a share of its own, around the end.
+std::vector<std::vector<double>> sobol_sequence(std::size_t count, std::size_t keys, std::uint64_t seed) {
+  boost::random::sobol engine(keys);
+  std::vector<double> shift(keys);
+  for (std::size_t k = 0; k < keys; ++k) shift[k] = Random(seed, k).uniform();
+  std::vector<std::vector<double>> rows(count, std::vector<double>(keys));
+  constexpr double one = 18446744073709551616.0;  // 2^64
+  for (std::vector<double>& row : rows) {
+    for (std::size_t k = 0; k < keys; ++k) {
+      const double share = static_cast<double>(engine() >> 11U << 11U) / one + shift[k];
+      row[k] = share < 1.0 ? share : share - 1.0;
+    }
+  }
+  return rows;
+}
+
+/// What is wrong with a variation; empty: nothing.
+std::string fault_of(const Variation& one) {
+  if (one.keys.empty() || std::ranges::any_of(one.keys, [](const std::string& key) { return key.empty(); })) {
+    return "must name a key";
+  }
+  if (!one.values.empty()) {
+    const auto fits = [&](const std::vector<std::string>& row) { return row.size() == one.keys.size(); };
+    return std::ranges::all_of(one.values, fits) ? "" : "must have a value for each key";
+  }
+  if (one.keys.size() != 1) return "must have rows of values for several keys";
+  if (!std::isfinite(one.range[0]) || !std::isfinite(one.range[1]) || !(one.range[0] < one.range[1])) {
+    return "must have values, or a range that rises";
+  }
+  if (one.count < (one.sampling == Sampling::grid ? 2 : 1) || one.count > most_values) {
+    return fmt::format("must have a count of 1 to {}, or of 2 and more on a grid", most_values);
+  }
+  return {};
+}
+
+std::size_t rows_of(const Variation& one) {
+  return one.values.empty() ? static_cast<std::size_t>(one.count) : one.values.size();
+}
+
+bool is_sampled(const Variation& one) {
+  return one.values.empty() && one.sampling != Sampling::grid;
+}
+
+void require_bounded(std::size_t keys, double values, double points) {
+  if (keys > most_keys) {
+    throw InvalidInput("vary", static_cast<double>(keys), "keys", fmt::format("must be at most {}", most_keys));
+  }
+  if (values > most_values) {
+    throw InvalidInput("vary", values, "values", fmt::format("must be at most {} of all keys together", most_values));
+  }
+  if (points > most_points) {
+    throw InvalidInput("vary", points, "points", fmt::format("must make at most {:.0e}", most_points),
+                       "Sample the keys together: sampling = \"sobol\"");
+  }
+}
+
+}  // namespace
+
+void Study::validate() const {
+  if (vary.empty()) throw InvalidInput("vary", "must name a key at least", "Write [[vary]] above each");
+  if (collect.empty()) throw InvalidInput("collect", "must name a value at least", "As [\"limit@8000\"]");
+  if (chunk_points < 0) throw InvalidInput("chunk_points", chunk_points, "", "must be >= 0");
+  std::set<std::string_view> known;
+  double points = 1.0, kept = 0.0;
+  std::array<int, 3> counted = {0, 0, 0};  // samples, by their kind
+  for (std::size_t i = 0; i < vary.size(); ++i) {
+    const Variation& one = vary[i];
+    const std::string member = fmt::format("vary[{}]", i);
+    if (const std::string fault = fault_of(one); !fault.empty()) throw InvalidInput(member, fault);
+    for (const std::string& key : one.keys) {
+      if (!known.insert(key).second) throw InvalidInput(member + ".key", fmt::format("varies {} twice", key));
+    }
+    int& count = counted[static_cast<std::size_t>(one.sampling)];
+    if (is_sampled(one) && count != 0 && count != one.count) {
+      throw InvalidInput(member + ".count", one.count, "",
+                         fmt::format("must be {}, as of the other keys that are sampled in this way", count),
+                         "They are sampled together");
+    }
+    kept += static_cast<double>(rows_of(one) * one.keys.size());
+    if (!is_sampled(one) || count == 0) points *= static_cast<double>(rows_of(one));
+    if (is_sampled(one)) count = one.count;
+  }
+  require_bounded(known.size(), kept, points);
+}
+
+StudyPoints::StudyPoints(const Study& study) {
+  study.validate();
+  std::array<std::vector<std::size_t>, 3> sampled;  // variations, by their kind
+  std::vector<std::size_t> first_key;
+  for (std::size_t i = 0; i < study.vary.size(); ++i) {
+    const Variation& one = study.vary[i];
+    first_key.push_back(keys_.size());
+    keys_.insert(keys_.end(), one.keys.begin(), one.keys.end());
+    if (is_sampled(one)) sampled[static_cast<std::size_t>(one.sampling)].push_back(i);
+  }
+  for (std::size_t i = 0; i < study.vary.size(); ++i) {
+    const Variation& one = study.vary[i];
+    Axis axis;
+    if (!is_sampled(one)) {
+      for (std::size_t k = 0; k < one.keys.size(); ++k) axis.places.push_back(first_key[i] + k);
+      axis.rows = one.values.empty() ? grid_rows(one) : one.values;
+    } else {
+      const std::vector<std::size_t>& together = sampled[static_cast<std::size_t>(one.sampling)];
+      if (together.front() != i) continue;
+      const auto count = static_cast<std::size_t>(one.count);
+      const auto shares = one.sampling == Sampling::lhs ? latin_hypercube(count, together.size(), study.seed)
+                                                        : sobol_sequence(count, together.size(), study.seed);
+      for (const std::size_t other : together) axis.places.push_back(first_key[other]);
+      for (const std::vector<double>& row : shares) {
+        std::vector<std::string>& texts = axis.rows.emplace_back();
+        for (std::size_t k = 0; k < row.size(); ++k) {
+          texts.push_back(number_text(between(study.vary[together[k]].range, row[k])));
+        }
+      }
+    }
+    axes_.push_back(std::move(axis));
+  }
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    axes_[i].stride = size_;
+    size_ *= axes_[i].rows.size();
+  }
+}
+
+std::vector<std::string> StudyPoints::values(std::size_t point) const {
+  std::vector<std::string> out(keys_.size());
+  for (const Axis& axis : axes_) {
+    const std::vector<std::string>& row = axis.rows[point / axis.stride % axis.rows.size()];
+    for (std::size_t k = 0; k < row.size(); ++k) out[axis.places[k]] = row[k];
+  }
+  return out;
+}
+
+std::vector<io::TomlSetting> StudyPoints::settings(std::size_t point) const {
+  std::vector<std::string> texts = values(point);
+  std::vector<io::TomlSetting> out;
+  out.reserve(texts.size());
+  for (std::size_t k = 0; k < texts.size(); ++k) out.push_back({keys_[k], std::move(texts[k])});
+  return out;
+}
+
+}  // namespace robomill::jobs

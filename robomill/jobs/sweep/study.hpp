@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
+#include "robomill/io/toml_source.hpp"
+
+// Method: robomill/jobs/README.md, "Studies (`sweep.hpp`)"
+
+namespace robomill::jobs {
+
+/// How values in a range are chosen.
+enum class Sampling {
+  grid,  ///< evenly, both ends among them
+  lhs,   ///< Latin hypercube: one at random in each of `count` equal parts [McKay1979]
+  sobol  ///< Sobol' sequence, shifted at random [JoeKuo2008]
+};
+inline constexpr Name<Sampling> sampling_names[] = {
+    {"grid", Sampling::grid}, {"lhs", Sampling::lhs}, {"sobol", Sampling::sobol}};
+
+/// Keys that vary together, and what they are set to: rows of values, or a range of one key.
+struct Variation {
+  std::vector<std::string> keys = {};  ///< of the base document: "cut.radial_depth_mm"; one, or the columns of a table
+  std::vector<std::vector<std::string>> values = {};  ///< rows of one value a key, as TOML writes them
+  std::array<double, 2> range = {0.0, 0.0};           ///< in the key's unit; where there are no values
+  int count = 0;                                      ///< of values in the range, >= 1; >= 2 on a grid
+  Sampling sampling = Sampling::grid;
+};
+
+/// study.toml: a job that is done again and again with other values of some keys.
+///
+/// What can be collected:
+///   limit@RPM              lobes: lowest unstable depth at a speed [mm]; infinity: none in the document's range
+///   chatter_frequency@RPM  lobes: at that limit [Hz]; NaN where there is none
+///   abs_mu@RPM,MM          lobes: spectral radius at a speed and a depth
+///   a.b.2                  any job: a number of its JSON document, by keys and places in lists, counted from 0
+struct ROBOMILL_API Study {
+  std::filesystem::path file = {};        ///< study.toml
+  std::string job = {};                   ///< the verb: "lobes"
+  std::filesystem::path base = {};        ///< its document
+  std::string options = {};               ///< of the job: the text of a JSON object; empty: none
+  std::vector<std::string> collect = {};  ///< what is kept of each result, see above
+  std::uint64_t seed = 1;                 ///< of samples
+  std::vector<Variation> vary = {};
+  int chunk_points = 0;  ///< points of a chunk; 0: as many as take a minute
+  std::vector<std::string> notes = {};
+
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// The points of a study: every value of each grid, list and table with every sample. Keys that are sampled in one way
+/// are sampled together and have one count. The last of the varied keys changes fastest; samples of both kinds stand
+/// where the first of their kind stands.
+class ROBOMILL_API StudyPoints {
+ public:
+  /// @throws InvalidInput as Study::validate, or if there are more than 1e9
+  explicit StudyPoints(const Study& study);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The keys that vary, in the order of the study.
+  [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
+  /// What they are set to at a point, in that order, as TOML writes it.
+  [[nodiscard]] std::vector<std::string> values(std::size_t point) const;
+  [[nodiscard]] std::vector<io::TomlSetting> settings(std::size_t point) const;
+
+ private:
+  /// Keys of one place in the product.
+  struct Axis {
+    std::vector<std::size_t> places = {};             ///< of its keys in keys_
+    std::vector<std::vector<std::string>> rows = {};  ///< a value a key
+    std::size_t stride = 1;                           ///< points between two of its rows
+  };
+  std::vector<std::string> keys_ = {};
+  std::vector<Axis> axes_ = {};
+  std::size_t size_ = 1;
+};
+
+}  // namespace robomill::jobs
