@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 thread_local OutputPlaces* innermost = nullptr;
+thread_local ReadBack* innermost_read = nullptr;
 
 /// Where a path leads, behind every link, as far as it is there.
 fs::path real(const fs::path& path) {
@@ -54,8 +55,19 @@ OutputPlaces::~OutputPlaces() {
   innermost = outer_;
 }
 
+ReadBack::ReadBack(fs::path folder) : folder_(std::move(folder)), outer_(innermost_read) {
+  innermost_read = this;
+}
+
+ReadBack::~ReadBack() {
+  innermost_read = outer_;
+}
+
 void require_no_output(const fs::path& path) {
   if (innermost == nullptr || is_pending(path)) return;
+  for (const ReadBack* job = innermost_read; job != nullptr; job = job->outer_) {
+    if (stands_in(path, job->folder_)) return;
+  }
   for (const OutputPlaces* job = innermost; job != nullptr; job = job->outer_) {
     for (const fs::path& place : job->places_) {
       if (is_same(path, place)) {

@@ -24,7 +24,21 @@ class ROBOMILL_API OutputPlaces {
   friend void require_no_output(const std::filesystem::path& path);
 };
 
-/// Before a file is read. @throws InvalidInput if this thread's job writes there
+/// While it lives, its thread reads what stands in a folder that its job writes: a job that goes on where it ended.
+class ReadBack {
+ public:
+  explicit ReadBack(std::filesystem::path folder);
+  ~ReadBack();
+  ReadBack(const ReadBack&) = delete;
+  ReadBack& operator=(const ReadBack&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  ReadBack* outer_;
+  friend void require_no_output(const std::filesystem::path& path);
+};
+
+/// Before a file is read. @throws InvalidInput if this thread's job writes there, and does not read it back
 void require_no_output(const std::filesystem::path& path);
 
 }  // namespace robomill::io

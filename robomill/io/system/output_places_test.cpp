@@ -54,6 +54,20 @@ TEST(OutputPlaces, OfAFolderAreAllThatIsInIt) {
   EXPECT_EQ(read_file(own.temporary()), "G1");
 }
 
+TEST(ReadBack, IsOfItsFolderAlone) {
+  const Folder folder;
+  for (const char* name : {"one", "two"}) fs::create_directory(folder.at(name));
+  static_cast<void>(folder.file("one/chunk", "1"));
+  static_cast<void>(folder.file("two/chunk", "1"));
+  const OutputPlaces places({folder.at("one"), folder.at("two")});
+  {
+    const ReadBack own(folder.at("one"));
+    EXPECT_EQ(read_file(folder.at("one/chunk")), "1");
+    EXPECT_THROW(static_cast<void>(read_file(folder.at("two/chunk"))), InvalidInput);
+  }
+  EXPECT_THROW(static_cast<void>(read_file(folder.at("one/chunk"))), InvalidInput);
+}
+
 TEST(OutputPlaces, DifferFromEachOther) {
   const Folder folder;
   EXPECT_NE(rejection([&] {

@@ -13,6 +13,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml/assembly.hpp"
 #include "robomill/io/toml/lines.hpp"
+#include "robomill/io/toml/settings_use.hpp"
 #include "robomill/io/toml/synonyms.hpp"
 #include "robomill/io/toml/tables.hpp"
 #include "robomill/io/toml/tree.hpp"
@@ -117,7 +118,13 @@ TomlFile::TomlFile(const TomlSource& source) : state_(std::make_unique<State>())
   for (const TomlSetting& setting : source.settings) state_->set(setting);
 }
 
-TomlFile::~TomlFile() = default;
+TomlFile::~TomlFile() {
+  SettingsUse* const use = SettingsUse::current();
+  if (use == nullptr) return;
+  for (const std::string& key : state_->set_keys) {
+    if (state_->asked.covers(key)) use->add(key);
+  }
+}
 
 bool TomlFile::number(std::string_view key, std::string_view member, double factor, double& out) {
   const toml::node* node = state_->ask(key);
