@@ -1,4 +1,4 @@
-#include "robomill/serve/lobes/dynamics_cache.hpp"
+#include "robomill/jobs/dynamics_cache.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -9,10 +9,10 @@
 #include "robomill/jobs/files/named_files.hpp"
 #include "robomill/jobs/planned_cut.hpp"
 
-namespace robomill::serve {
+namespace robomill::jobs {
 namespace fs = std::filesystem;
 
-DynamicsCache::Key DynamicsCache::key_of(const jobs::LobesFile& file) {
+DynamicsCache::Key DynamicsCache::key_of(const LobesFile& file) {
   return {.files = {file.path, file.modes, file.frf, file.cell, file.workpiece_modes, file.workpiece_frf},
           .joints = file.joints,
           .axes = file.posture_axes,
@@ -22,7 +22,7 @@ DynamicsCache::Key DynamicsCache::key_of(const jobs::LobesFile& file) {
           .drilling = file.drilling};
 }
 
-std::vector<fs::path> DynamicsCache::watched_files(const jobs::LobesFile& file) {
+std::vector<fs::path> DynamicsCache::watched_files(const LobesFile& file) {
   std::vector<fs::path> files = {file.modes, file.frf, file.cell, file.workpiece_modes, file.workpiece_frf};
   if (!file.cell.empty()) {
     const cell::CellFile cell = cell::read_cell(file.cell);
@@ -45,12 +45,12 @@ std::vector<DynamicsCache::Stamp> DynamicsCache::stamps_of(const std::vector<fs:
   return stamps;
 }
 
-void DynamicsCache::read(jobs::LobesFile& file, Progress& progress) {
+void DynamicsCache::read(LobesFile& file, Progress& progress) {
   Structure fresh{.key = key_of(file), .watched = watched_files(file)};
   fresh.stamps = stamps_of(fresh.watched);  // before they are read: a change meanwhile is seen the next time
   const auto notes = static_cast<std::ptrdiff_t>(file.notes.size());
   const auto assumed = static_cast<std::ptrdiff_t>(file.assumed.size());
-  jobs::load_dynamics(file, progress);
+  load_dynamics(file, progress);
   ++reads_;
   fresh.dynamics = file.problem.dynamics;
   fresh.workpiece_dynamics = file.problem.workpiece_dynamics;
@@ -63,9 +63,9 @@ void DynamicsCache::read(jobs::LobesFile& file, Progress& progress) {
   if (kept_.size() > most_) kept_.pop_back();
 }
 
-void DynamicsCache::load(jobs::LobesFile& file, Progress& progress) {
+void DynamicsCache::load(LobesFile& file, Progress& progress) {
   const bool in_the_document = !file.problem.dynamics.modes.empty() || !file.problem.workpiece_dynamics.modes.empty();
-  if (in_the_document) return jobs::load_dynamics(file, progress);
+  if (in_the_document) return load_dynamics(file, progress);
   const auto known = std::ranges::find(kept_, key_of(file), &Structure::key);
   if (known == kept_.end()) return read(file, progress);
   if (stamps_of(known->watched) != known->stamps) {
@@ -82,24 +82,24 @@ void DynamicsCache::load(jobs::LobesFile& file, Progress& progress) {
   add_assumed(file.assumed, known->assumed);
 }
 
-void DynamicsCache::load_plan(jobs::LobesFile& file, const fs::path& job, Progress& progress) {
+void DynamicsCache::load_plan(LobesFile& file, const fs::path& job, Progress& progress) {
   auto known = std::ranges::find(planned_, job, &Planned::job);
   if (known != planned_.end() && stamps_of(known->watched) != known->stamps) {
     planned_.erase(known);
     known = planned_.end();
   }
   if (known == planned_.end()) {
-    Planned fresh{.job = job, .watched = jobs::files_named_in(job)};
+    Planned fresh{.job = job, .watched = files_named_in(job)};
     fresh.watched.push_back(job);
     fresh.stamps = stamps_of(fresh.watched);
-    fresh.structure = std::make_shared<const jobs::PlanResult>(jobs::run_structure(job, jobs::default_seed, progress));
+    fresh.structure = std::make_shared<const PlanResult>(run_structure(job, default_seed, progress));
     ++reads_;
     planned_.push_front(std::move(fresh));
     if (planned_.size() > most_) planned_.pop_back();
     known = planned_.begin();
   }
   planned_.splice(planned_.begin(), planned_, known);
-  jobs::take_plan(file, *known->structure);
+  take_plan(file, *known->structure);
 }
 
-}  // namespace robomill::serve
+}  // namespace robomill::jobs

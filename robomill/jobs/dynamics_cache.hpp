@@ -13,7 +13,7 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/plan.hpp"
 
-namespace robomill::serve {
+namespace robomill::jobs {
 
 /// The structures that lobes.toml files name. A posture's modes take seconds to find, and somebody who moves a slider
 /// asks for the same ones again and again.
@@ -21,13 +21,13 @@ class DynamicsCache {
  public:
   /// @param most  structures that are kept; the one that was asked for longest ago goes first
   explicit DynamicsCache(std::size_t most = 8) : most_(most) {}
-  /// As jobs::load_dynamics, but that a default for [uncertainty] is left to the caller. Files are read again when one
+  /// As load_dynamics, but that a default for [uncertainty] is left to the caller. Files are read again when one
   /// of them, or what the document says of the structure, has changed.
-  void load(jobs::LobesFile& file, Progress& progress);
+  void load(LobesFile& file, Progress& progress);
 
-  /// As jobs::take_plan, with the structure of a job. It is found again when one of the files that the job names
+  /// As take_plan, with the structure of a job. It is found again when one of the files that the job names
   /// changes.
-  void load_plan(jobs::LobesFile& file, const std::filesystem::path& job, Progress& progress);
+  void load_plan(LobesFile& file, const std::filesystem::path& job, Progress& progress);
 
   /// How often files were read.
   [[nodiscard]] std::size_t reads() const { return reads_; }
@@ -59,11 +59,11 @@ class DynamicsCache {
     std::filesystem::path job = {};
     std::vector<std::filesystem::path> watched = {};
     std::vector<Stamp> stamps = {};
-    std::shared_ptr<const jobs::PlanResult> structure = {};
+    std::shared_ptr<const PlanResult> structure = {};
   };
-  void read(jobs::LobesFile& file, Progress& progress);
-  static Key key_of(const jobs::LobesFile& file);
-  static std::vector<std::filesystem::path> watched_files(const jobs::LobesFile& file);
+  void read(LobesFile& file, Progress& progress);
+  static Key key_of(const LobesFile& file);
+  static std::vector<std::filesystem::path> watched_files(const LobesFile& file);
   static std::vector<Stamp> stamps_of(const std::vector<std::filesystem::path>& files);
 
   std::size_t most_, reads_ = 0;
@@ -71,4 +71,4 @@ class DynamicsCache {
   std::list<Planned> planned_;  ///< the same of jobs
 };
 
-}  // namespace robomill::serve
+}  // namespace robomill::jobs

@@ -12,11 +12,12 @@
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/records/records.hpp"
+#include "robomill/io/system/output_places.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/lobes.hpp"
@@ -181,6 +182,15 @@ TEST_F(Sweeps, HaveTheSameBytesAfterTwentyKills) {
   EXPECT_GE(killed, 5) << "most runs are over before they are killed";
 }
 
+// The program reads nothing that stands where a job writes, but for this.
+TEST_F(Sweeps, GoOnWhereTheirJobWrites) {
+  const io::OutputPlaces places({folder_.at("out")});
+  EXPECT_TRUE(run("out").complete());
+  const SweepResult again = run("out");
+  EXPECT_EQ(again.ran_chunks, 0U);
+  EXPECT_TRUE(again.damaged.empty());
+}
+
 TEST_F(Sweeps, OfShardsAreMerged) {
   run("whole");
   for (const int shard : {3, 1}) run("shards", shard, 3);
@@ -281,8 +291,8 @@ TEST_F(Sweeps, OfOtherFilesAreRejected) {
   const auto modes = [&](const std::string& name, double x) {
     folder_.file(name, "[[modes]]\nfrequency_hz = 600\ndamping_ratio = 0.02\n" + fmt::format(fmt::runtime(mode), x, x));
   };
-  modes("a.toml", -0.01);
-  modes("b.toml", -0.02);
+  modes("a.toml", -0.04);
+  modes("b.toml", -0.08);
   folder_.file("study.toml", R"(
 [study]
 job = "lobes"
@@ -293,7 +303,12 @@ key = "dynamics.modes"
 values = ["a.toml", "b.toml"]
 )");
   EXPECT_EQ(run("out").done, 2U) << bytes("out/results.csv");
-  EXPECT_NE(bytes("out/results.csv").find("\"b.toml\","), std::string::npos) << bytes("out/results.csv");
+  std::vector<std::string> warnings;
+  const io::TextTable table = io::parse_text_table(bytes("out/results.csv"), "results.csv", warnings);
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[1].fields[0], "b.toml");
+  EXPECT_NEAR(*io::parse_cell(table.rows[0].fields[1]), 2.0 * *io::parse_cell(table.rows[1].fields[1]), 1e-3)
+      << "a mode twice as compliant";
   for (const char* name : {"a.toml", "b.toml"}) {
     const std::string before = bytes(name);
     folder_.file(name, before + "# the same mode\n");
@@ -319,6 +334,24 @@ values = [5, 12]
   ASSERT_EQ(result.reasons.size(), 1U);
   EXPECT_NE(result.reasons[0].find("cut.radial_depth_mm = 12 mm"), std::string::npos) << result.reasons[0];
   EXPECT_NE(bytes("out/results.csv").find("12,,rejected"), std::string::npos) << bytes("out/results.csv");
+}
+
+// Also one that another verb reads in the same document.
+TEST_F(Sweeps, RejectAKeyThatTheJobDoesNotRead) {
+  folder_.file("study.toml", R"(
+[study]
+job = "lobes"
+base = "lobes.toml"
+collect = "limit@8000"
+[[vary]]
+key = "spindle.max_speed_rpm"
+values = [9000]
+)");
+  const SweepResult result = run("out");
+  EXPECT_EQ(result.rejected, 1U);
+  ASSERT_EQ(result.reasons.size(), 1U);
+  EXPECT_NE(result.reasons[0].find("lobes.toml: lobes does not read spindle.max_speed_rpm in it"), std::string::npos)
+      << result.reasons[0];
 }
 
 TEST_F(Sweeps, TakeAnyNumberOfADocument) {

@@ -11,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/system/output_places.hpp"
 #include "robomill/io/text.hpp"
 
 namespace robomill::jobs {
@@ -19,6 +20,7 @@ namespace {
 constexpr const char* plan_name = "study.json";
 
 SweepPlan read_plan(const std::filesystem::path& path) {
+  const io::ReadBack own(path.parent_path());
   const io::Json json = io::read_json(path);
   const io::JsonNode root(json, path.string());
   const auto texts = [&](const char* name) {
@@ -119,10 +121,11 @@ SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk,
   const std::filesystem::path path = file_of(chunk);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return Found::missing;
+  const io::ReadBack own(folder_);
   std::optional<Chunk> read;
   try {
     read = read_chunk(io::read_file(path));
-  } catch (const InvalidInput&) {  // empty
+  } catch (const InvalidInput&) {  // empty, or it cannot be read
   }
   const bool fits = read && read->fingerprint == plan.fingerprint && read->first == plan.first_of(chunk) &&
                     read->points.size() == plan.size_of(chunk) &&

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -13,6 +15,8 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/key_unit.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml/settings_use.hpp"
+#include "robomill/jobs/dynamics_cache.hpp"
 #include "robomill/jobs/files/in_words.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 
@@ -88,25 +92,49 @@ double number_at(const io::Json& document, const std::vector<std::string>& path)
   return at->is_number() ? at->get<double>() : nothing;
 }
 
+double depth_mm(const stability::Limit& limit) {
+  return limit.status == stability::Limit::Status::found ? limit.axial_depth_m / units::mm
+                                                         : std::numeric_limits<double>::infinity();
+}
+
+double frequency_hz(const stability::Limit& limit) {
+  return limit.status == stability::Limit::Status::found ? limit.chatter_frequency_hz : nothing;
+}
+
+/// The structures of the points' documents, of several threads.
+class Structures {
+ public:
+  void load(LobesFile& cut, Progress& progress) {
+    const bool in_files = !cut.modes.empty() || !cut.frf.empty() || !cut.cell.empty() || !cut.workpiece_modes.empty() ||
+                          !cut.workpiece_frf.empty();
+    if (!cut.job.empty() || !in_files) return load_dynamics(cut, progress);
+    const std::lock_guard lock(loading_);
+    cache_.load(cut, progress);
+  }
+
+ private:
+  std::mutex loading_;
+  DynamicsCache cache_;
+};
+
 /// Speeds and depths of a cut, without its chart.
-PointOutcome lobes_at(const std::vector<Wanted>& wanted, const io::TomlSource& source, Progress& progress) {
+PointOutcome lobes_at(const std::vector<Wanted>& wanted, const io::TomlSource& source, Structures& structures,
+                      Progress& progress) {
   LobesFile cut = read_lobes(source);
   require_modes_in_three_directions(cut);
-  load_dynamics(cut, progress);
+  structures.load(cut, progress);
   cut.validate();
   PointOutcome out;
+  std::map<double, stability::Limit> limits;  // by speed: two values may be of one
   with_words_of(cut, [&] {
     for (const Wanted& one : wanted) {
+      const double speed = one.point.spindle_speed_rad_per_s;
       if (one.kind == Wanted::Kind::spectral_radius) {
         out.values.push_back(stability::evaluate_point(cut.problem, cut.options, one.point).spectral_radius);
         continue;
       }
-      const stability::Limit limit =
-          stability::limit_depths(cut.problem, cut.options, {one.point.spindle_speed_rad_per_s}).front();
-      const bool found = limit.status == stability::Limit::Status::found;
-      out.values.push_back(one.kind == Wanted::Kind::limit
-                               ? (found ? limit.axial_depth_m / units::mm : std::numeric_limits<double>::infinity())
-                               : (found ? limit.chatter_frequency_hz : nothing));
+      if (!limits.contains(speed)) limits[speed] = stability::limit_depths(cut.problem, cut.options, {speed}).front();
+      out.values.push_back(one.kind == Wanted::Kind::limit ? depth_mm(limits[speed]) : frequency_hz(limits[speed]));
     }
   });
   return out;
@@ -132,7 +160,35 @@ struct Evaluator::Parts {
   io::Json options = io::Json::object();
   std::vector<Wanted> wanted = {};
   std::vector<Wanted> at_points = {};  ///< of these what needs no document
+  std::unique_ptr<Structures> structures = std::make_unique<Structures>();
+
+  [[nodiscard]] PointOutcome values_at(const std::vector<io::TomlSetting>& settings, Progress& progress) const;
 };
+
+PointOutcome Evaluator::Parts::values_at(const std::vector<io::TomlSetting>& settings, Progress& progress) const {
+  PointOutcome out;
+  if (!at_points.empty()) out = lobes_at(at_points, io::TomlSource(base, {}, settings), *structures, progress);
+  if (at_points.size() == wanted.size()) return out;
+  const VerbJob job = {.verb = verb,
+                       .inputs = {base},
+                       .options = options,
+                       .root = study.parent_path(),
+                       .wants_json = true,
+                       .settings = settings};
+  const Outcome outcome = verb.run(job, progress);
+  const io::Json document = io::parsed(outcome.json);
+  std::vector<double> values;
+  std::size_t next = 0;
+  for (const Wanted& one : wanted) {
+    values.push_back(one.kind == Wanted::Kind::path ? number_at(document, one.path) : out.values[next++]);
+  }
+  out.values = std::move(values);
+  if (!outcome.shortfall.empty()) {
+    out.state = PointState::short_of;
+    out.reason = printable(outcome.shortfall);
+  }
+  return out;
+}
 
 namespace {
 
@@ -148,8 +204,8 @@ const Verb& verb_of(const Study& study) {
 
 /// @throws InvalidInput naming the option
 io::Json options_for(const Verb& verb, const Study& study) {
-  if (study.options.empty()) return checked_options(verb, AskedBy::request, study.base, io::Json::object());
-  io::Json out = checked_options(verb, AskedBy::request, study.base, io::parsed_or_discarded(study.options));
+  const io::Json given = study.options.empty() ? io::Json::object() : io::parsed_or_discarded(study.options);
+  io::Json out = checked_options(verb, AskedBy::request, study.base, given);
   for (const VerbOption& option : verb.options) {
     if (!out.contains(option.name) || (option.takes != Takes::new_file && option.takes != Takes::new_folder)) continue;
     throw InvalidInput(fmt::format("options.{}", option.name), "writes a file, which a study does not",
@@ -172,28 +228,14 @@ Evaluator::Evaluator(const Study& study)
 Evaluator::~Evaluator() = default;
 
 PointOutcome Evaluator::at(const std::vector<io::TomlSetting>& settings, Progress& progress) const {
-  const io::TomlSource source(parts_->base, {}, settings);
   try {
-    PointOutcome out;
-    if (!parts_->at_points.empty()) out = lobes_at(parts_->at_points, source, progress);
-    if (parts_->at_points.size() == parts_->wanted.size()) return out;
-    const VerbJob job = {.verb = parts_->verb,
-                         .inputs = {parts_->base},
-                         .options = parts_->options,
-                         .root = parts_->study.parent_path(),
-                         .wants_json = true,
-                         .settings = settings};
-    const Outcome outcome = parts_->verb.run(job, progress);
-    const io::Json document = io::parsed(outcome.json);
-    std::vector<double> values;
-    std::size_t next = 0;
-    for (const Wanted& one : parts_->wanted) {
-      values.push_back(one.kind == Wanted::Kind::path ? number_at(document, one.path) : out.values[next++]);
-    }
-    out.values = std::move(values);
-    if (!outcome.shortfall.empty()) {
-      out.state = PointState::short_of;
-      out.reason = printable(outcome.shortfall);
+    const io::SettingsUse use;
+    PointOutcome out = parts_->values_at(settings, progress);
+    for (const io::TomlSetting& setting : settings) {
+      if (use.has(setting.key)) continue;
+      throw InvalidInput(parts_->base.string(),
+                         fmt::format("{} does not read {} in it", parts_->verb.name, setting.key),
+                         "Is it of another file, that this one names?");
     }
     return out;
   } catch (const InvalidInput& error) {

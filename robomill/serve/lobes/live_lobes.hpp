@@ -6,8 +6,8 @@
 
 #include "robomill/base/progress.hpp"
 #include "robomill/io/toml_source.hpp"
+#include "robomill/jobs/dynamics_cache.hpp"
 #include "robomill/serve/client_order.hpp"
-#include "robomill/serve/lobes/dynamics_cache.hpp"
 #include "robomill/stability/lobes.hpp"
 
 // Method: robomill/serve/README.md, "Live lobes"
@@ -35,10 +35,10 @@ class LiveLobes {
   /// @throws InvalidInput as jobs::run_lobes, or naming a key that cannot be set; Interrupted
   [[nodiscard]] std::string answer(const LiveLobesRequest& request, Progress& progress = Progress::none());
 
-  [[nodiscard]] const DynamicsCache& dynamics() const { return dynamics_; }
+  [[nodiscard]] const jobs::DynamicsCache& dynamics() const { return dynamics_; }
 
  private:
-  DynamicsCache dynamics_;
+  jobs::DynamicsCache dynamics_;
 };
 
 }  // namespace robomill::serve
