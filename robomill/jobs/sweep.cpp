@@ -145,11 +145,20 @@ class Sweep {
     progress_.start("points", points);
     const Clock::time_point begin = Clock::now();
     for (const std::uint64_t chunk : missing) {
-      folder_.save(plan, chunk, outcomes_of(plan, chunk));
+      const std::vector<PointOutcome> outcomes = outcomes_of(plan, chunk);
+      require_unchanged(plan);
+      folder_.save(plan, chunk, outcomes);
       ++result_.ran_chunks;
     }
     if (points == 0) return;
     result_.point_s = seconds_since(begin) * std::max(thread_count(), 1) / static_cast<double>(points);
+  }
+
+  /// Points are computed from the files as they stood when the study began.
+  void require_unchanged(const SweepPlan& plan) const {
+    if (fingerprint_of(study_) == plan.fingerprint) return;
+    throw InvalidInput(study_.file.string(), "or a file that it names has changed while the study ran",
+                       "The points that were just done are dropped");
   }
 
   std::vector<PointOutcome> outcomes_of(const SweepPlan& plan, std::uint64_t chunk) {
@@ -160,6 +169,8 @@ class Sweep {
       for (std::size_t i = from; i < to; ++i) {
         Progress inside([this](const std::string&, double) { progress_.check(); }, nullptr);
         out[i] = evaluator_.at(points_.settings(first + i), inside);
+        // Once more: what could not be read for a moment is no fault of the point.
+        if (out[i].state == PointState::rejected) out[i] = evaluator_.at(points_.settings(first + i), inside);
         progress_.advance();
       }
     });
@@ -182,6 +193,11 @@ class Sweep {
     if (!job_.merge.empty()) tables.push_back(job_.merge);
     if (job_.merge.empty() && result_.complete() && job_.shards == 1)
       tables = {folder_.at("results.csv"), folder_.at("results.h5")};
+    if (job_.merge.empty() && !result_.complete() && job_.shards == 1) {
+      throw InvalidInput(folder_.at("chunks").string(),
+                         fmt::format("{} of {} chunks are whole", result_.done_chunks, result_.chunks),
+                         "Others were changed, or are damaged: run the study again");
+    }
     if (tables.empty()) return;
     if (!result_.complete()) {
       throw InvalidInput(job_.merge.string(),

@@ -282,6 +282,24 @@ TEST_F(Sweeps, OfAnotherStudyAreRejected) {
   EXPECT_NE(says().find("study.json: fingerprint"), std::string::npos) << says();
 }
 
+// A chunk whose document was replaced while it ran is not kept.
+TEST_F(Sweeps, DropPointsOfFilesThatChangeMeanwhile) {
+  bool changed = false;
+  Progress changes(
+      [&](const std::string&, double done) {
+        if (changed || done < 0.5) return;
+        folder_.file("lobes.toml", std::string(cut) + "# the same cut\n");
+        changed = true;
+      },
+      nullptr);
+  EXPECT_NE(rejection([&] {
+              static_cast<void>(run_sweep({.study = folder_.at("study.toml"), .folder = folder_.at("out")}, changes));
+            }).find("or a file that it names has changed while the study ran"),
+            std::string::npos);
+  folder_.file("lobes.toml", cut);
+  EXPECT_EQ(run("out").ran_chunks, 2U);
+}
+
 // Files that a document or the value of a key names count with what is in them.
 TEST_F(Sweeps, OfOtherFilesAreRejected) {
   const std::string text = cut;

@@ -48,26 +48,29 @@ void add_files(const io::Json& value, const fs::path& folder, Found& found) {
 
 /// None where it is missing, outside or no TOML: the job says so.
 /// @param bytes  of the text are added
-std::vector<io::TomlValue> values_of(const fs::path& path, std::size_t& bytes) {
+std::vector<io::TomlValue> values_of(const fs::path& path, Unreadable unreadable, std::size_t& bytes) {
+  bool is_read = false;
   try {
     const std::string text = io::read_file(path, longest_document);
+    is_read = true;
     bytes += text.size();
     return io::toml_values(text, path.string());
   } catch (const InvalidInput&) {
+    if (!is_read && unreadable == Unreadable::rejected) throw;
     return {};
   }
 }
 
 }  // namespace
 
-std::vector<fs::path> files_named_in(const fs::path& document) {
+std::vector<fs::path> files_named_in(const fs::path& document, Unreadable unreadable) {
   Found found;
   std::size_t documents = 0, bytes = 0;
   // Grows while it is read: documents name documents.
   for (std::size_t next = 0; next <= found.files.size(); ++next) {
     const fs::path path = next == 0 ? document : found.files[next - 1];
     if (io::format_of(path) != io::Format::toml) continue;
-    const std::vector<io::TomlValue> values = values_of(path, bytes);
+    const std::vector<io::TomlValue> values = values_of(path, unreadable, bytes);
     if (++documents > most_documents || bytes > most_bytes) {
       throw InvalidInput("input",
                          fmt::format("names more than {} TOML documents, or documents of more than {} MB together",

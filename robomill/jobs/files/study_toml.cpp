@@ -89,7 +89,8 @@ std::string options_of(io::TomlFile& file) {
 /// A file, and the files that it names, by their content.
 void add_file(const std::filesystem::path& file, Digest& digest) {
   digest.text(io::read_file(file));
-  for (const std::filesystem::path& named : files_named_in(file)) digest.text(io::read_file(named));
+  for (const std::filesystem::path& named : files_named_in(file, Unreadable::rejected))
+    digest.text(io::read_file(named));
 }
 
 /// Files that the values of keys name: their paths are relative to the base document.

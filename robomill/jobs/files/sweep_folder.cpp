@@ -122,11 +122,8 @@ SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk,
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return Found::missing;
   const io::ReadBack own(folder_);
-  std::optional<Chunk> read;
-  try {
-    read = read_chunk(io::read_file(path));
-  } catch (const InvalidInput&) {  // empty, or it cannot be read
-  }
+  if (std::filesystem::file_size(path, ignored) == 0) return Found::damaged;
+  std::optional<Chunk> read = read_chunk(io::read_file(path));
   const bool fits = read && read->fingerprint == plan.fingerprint && read->first == plan.first_of(chunk) &&
                     read->points.size() == plan.size_of(chunk) &&
                     read->points.front().values.size() == plan.collect.size();

@@ -59,6 +59,7 @@ class SweepFolder {
     damaged,  ///< or of another study
     there
   };
+  /// @throws InvalidInput if it is there and cannot be read
   [[nodiscard]] Found find(const SweepPlan& plan, std::uint64_t chunk, Chunk& out) const;
   void save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const;
 
