@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/random/sobol.hpp>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/random.hpp"
+#include "robomill/jobs/sweep/samples.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -35,37 +33,6 @@ std::vector<std::vector<std::string>> grid_rows(const Variation& one) {
   rows.reserve(static_cast<std::size_t>(one.count));
   for (int i = 0; i < one.count; ++i) {
     rows.push_back({number_text(i + 1 == one.count ? one.range[1] : between(one.range, i / (one.count - 1.0)))});
-  }
-  return rows;
-}
-
-/// Shares in [0, 1): a row a sample, a column a key.
-std::vector<std::vector<double>> latin_hypercube(std::size_t count, std::size_t keys, std::uint64_t seed) {
-  std::vector<std::vector<double>> rows(count, std::vector<double>(keys));
-  for (std::size_t k = 0; k < keys; ++k) {
-    Random random(seed, k);
-    std::vector<std::size_t> parts(count);
-    std::iota(parts.begin(), parts.end(), std::size_t{0});
-    for (std::size_t i = count; i > 1; --i) std::swap(parts[i - 1], parts[random.index(i)]);
-    for (std::size_t i = 0; i < count; ++i) {
-      rows[i][k] = (static_cast<double>(parts[i]) + random.uniform()) / static_cast<double>(count);
-    }
-  }
-  return rows;
-}
-
-/// The same by the sequence, each key shifted by a share of its own, around the end.
-std::vector<std::vector<double>> sobol_sequence(std::size_t count, std::size_t keys, std::uint64_t seed) {
-  boost::random::sobol engine(keys);
-  std::vector<double> shift(keys);
-  for (std::size_t k = 0; k < keys; ++k) shift[k] = Random(seed, k).uniform();
-  std::vector<std::vector<double>> rows(count, std::vector<double>(keys));
-  constexpr double one = 18446744073709551616.0;  // 2^64
-  for (std::vector<double>& row : rows) {
-    for (std::size_t k = 0; k < keys; ++k) {
-      const double share = static_cast<double>(engine() >> 11U << 11U) / one + shift[k];
-      row[k] = share < 1.0 ? share : share - 1.0;
-    }
   }
   return rows;
 }
