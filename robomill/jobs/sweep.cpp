@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/jobs/files/statistics_json.hpp"
 #include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/files/sweep_tables.hpp"
 #include "robomill/jobs/sweep/evaluate.hpp"
+#include "robomill/jobs/sweep/statistics.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -69,8 +73,12 @@ class Sweep {
         points_(study_),
         evaluator_(study_),
         folder_(job.folder) {
+    if (study_.boundary && job.shards > 1) {
+      throw InvalidInput("shard", "is not for a study with [boundary]",
+                         "Which points are next depends on those before. One run does a step on all threads");
+    }
     result_.study = study_;
-    result_.points = points_.size();
+    result_.points = study_.boundary ? static_cast<std::uint64_t>(study_.boundary->most_points) : points_.size();
   }
 
   SweepResult run() {
@@ -79,22 +87,28 @@ class Sweep {
       return std::move(result_);
     }
     SweepPlan plan = {.fingerprint = fingerprint_of(study_),
-                      .points = points_.size(),
+                      .points = result_.points,
                       .keys = points_.keys(),
                       .collect = study_.collect};
+    std::optional<SweepFolder::Locks> locks;
     if (job_.status) {
       const SweepPlan there = folder_.plan();
       folder_.require_same(there, plan);
       plan = there;
     } else {
       plan = folder_.begin(std::move(plan), [this] { return chunk_points(); });
-      const SweepFolder::Locks locks = folder_.lock(job_.shard, job_.shards);
-      do_chunks(plan);
+      locks = folder_.lock(job_.shard, job_.shards);
     }
-    result_.chunks = plan.chunks();
+    if (study_.boundary) {
+      trace(plan);
+    } else {
+      add(plan);
+    }
+    result_.points = points_.size();
     result_.chunk_points = plan.chunk_points;
-    look_at(plan);
-    if (!job_.status) write_tables(plan);
+    look_at_chunks();
+    if (!job_.status) write_tables();
+    if (!job_.status && result_.complete() && job_.shards == 1) write_findings();
     return std::move(result_);
   }
 
@@ -132,8 +146,56 @@ class Sweep {
     for (auto chunk = static_cast<std::uint64_t>(job_.shard - 1); chunk < plan.chunks(); chunk += step) {
       const SweepFolder::Found found = folder_.find(plan, chunk, there);
       if (found == SweepFolder::Found::there) continue;
-      if (found == SweepFolder::Found::damaged) result_.damaged.push_back(chunk);
+      if (found == SweepFolder::Found::damaged) result_.damaged.push_back(plan.first_chunk + chunk);
       out.push_back(chunk);
+    }
+    return out;
+  }
+
+  void add(const SweepPlan& plan) {
+    plans_.push_back(plan);
+    if (!job_.status) do_chunks(plan);
+  }
+
+  struct Unfinished {};
+
+  /// The chunks of each step of the boundary follow those of the step before, on whose values they depend.
+  void trace(SweepPlan plan) {
+    const BoundaryOptions options = boundary_options(study_);
+    const BoundaryGrid grid(options);
+    points_ = StudyPoints(points_.keys());
+    try {
+      boundary_ = trace_boundary(options, [&](std::span<const std::uint64_t> asked) {
+        plan.points = asked.size();
+        plan.first_point = points_.size();
+        for (const std::uint64_t point : asked) points_.add(texts_of(grid, point));
+        add(plan);
+        std::vector<double> out = heights_of(plan);
+        plan.first_chunk += plan.chunks();
+        return out;
+      });
+    } catch (const Unfinished&) {
+      boundary_.reset();
+    }
+  }
+
+  static std::vector<std::string> texts_of(const BoundaryGrid& grid, std::uint64_t point) {
+    std::vector<std::string> out;
+    for (std::size_t axis = 0; axis < grid.axes(); ++axis)
+      out.push_back(fmt::format("{}", grid.coordinate(point, axis)));
+    return out;
+  }
+
+  /// Of the boundary's value above its level. @throws Unfinished if a chunk is missing
+  [[nodiscard]] std::vector<double> heights_of(const SweepPlan& plan) const {
+    const auto column = std::ranges::find(plan.collect, study_.boundary->value) - plan.collect.begin();
+    std::vector<double> out;
+    Chunk chunk;
+    for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+      if (folder_.find(plan, i, chunk) != SweepFolder::Found::there) throw Unfinished();
+      for (const PointOutcome& point : chunk.points) {
+        out.push_back(point.values[static_cast<std::size_t>(column)] - study_.boundary->level);
+      }
     }
     return out;
   }
@@ -177,18 +239,23 @@ class Sweep {
     return out;
   }
 
-  void look_at(const SweepPlan& plan) {
-    Seen seen(plan.collect);
+  void look_at_chunks() {
+    Seen seen(study_.collect);
     Chunk chunk;
-    for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
-      if (folder_.find(plan, i, chunk) != SweepFolder::Found::there) continue;
-      ++result_.done_chunks;
-      seen.count(chunk, result_);
+    for (const SweepPlan& plan : plans_) {
+      result_.chunks += plan.chunks();
+      for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+        if (folder_.find(plan, i, chunk) != SweepFolder::Found::there) continue;
+        ++result_.done_chunks;
+        seen.count(chunk, result_);
+      }
     }
     if (result_.done_chunks > 0) result_.absent = seen.absent();
   }
 
-  void write_tables(const SweepPlan& plan) {
+  [[nodiscard]] DoneStudy done_study() const { return {.plans = plans_, .points = points_, .folder = folder_}; }
+
+  void write_tables() {
     std::vector<std::filesystem::path> tables;
     if (!job_.merge.empty()) tables.push_back(job_.merge);
     if (job_.merge.empty() && result_.complete() && job_.shards == 1)
@@ -205,9 +272,28 @@ class Sweep {
                          "Run the other shards first");
     }
     for (const std::filesystem::path& table : tables) {
-      write_sweep_table(table, plan, points_, folder_);
+      write_sweep_table(table, done_study());
       result_.written.push_back(table.string());
     }
+  }
+
+  /// What the points say together, where the study asks for it.
+  void write_findings() {
+    if (!study_.boundary && !study_.sensitivity && !study_.probability) return;
+    Statistics found;
+    if (boundary_) {
+      found.boundary = summary_of_boundary(study_, *boundary_);
+      for (const char* name : {"boundary.csv", "boundary.h5"}) {
+        write_boundary_table(folder_.at(name), plans_.front(), *boundary_);
+        result_.written.push_back(folder_.at(name).string());
+      }
+    } else {
+      found = statistics_of(study_, points_, columns_of(done_study()));
+    }
+    const std::filesystem::path path = folder_.at("statistics.json");
+    write_statistics(path, found);
+    result_.written.push_back(path.string());
+    result_.findings = lines_of(found);
   }
 
   const SweepJob& job_;
@@ -217,6 +303,8 @@ class Sweep {
   Evaluator evaluator_;
   SweepFolder folder_;
   SweepResult result_;
+  std::vector<SweepPlan> plans_ = {};  ///< one, but of a boundary one a step
+  std::optional<Boundary> boundary_ = {};
 };
 
 }  // namespace

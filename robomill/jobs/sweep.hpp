@@ -35,7 +35,9 @@ struct SweepResult {
   std::vector<std::string> processors = {};            ///< kinds that worked; of several the last bits may differ
   std::vector<std::string> absent = {};                ///< what is collected and no point has
   double point_s = 0.0;                                ///< that a point took here, of one thread [s]; 0: none was done
-  std::vector<std::string> written = {};               ///< files
+  /// What its boundary, its indices and its probabilities are, a line each; empty: it asks for none, or is not done.
+  std::vector<std::string> findings = {};
+  std::vector<std::string> written = {};  ///< files
 
   [[nodiscard]] bool complete() const { return chunks > 0 && done_chunks == chunks; }
 };

@@ -8,5 +8,11 @@ namespace robomill::jobs {
 [[nodiscard]] const io::Schema<Study>& study_table();
 /// [[vary]]
 [[nodiscard]] const io::Schema<Variation>& vary_table();
+/// [boundary]
+[[nodiscard]] const io::Schema<BoundaryTask>& boundary_task_table();
+/// [sensitivity]
+[[nodiscard]] const io::Schema<SensitivityTask>& sensitivity_task_table();
+/// [probability]
+[[nodiscard]] const io::Schema<ProbabilityTask>& probability_task_table();
 
 }  // namespace robomill::jobs

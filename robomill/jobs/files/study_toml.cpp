@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 #include <system_error>
@@ -119,11 +120,10 @@ const io::Schema<Study>& study_table() {
            "what is kept of each result: limit@RPM [mm], chatter_frequency@RPM [Hz] and abs_mu@RPM,MM of lobes, or a "
            "path "
            "in the verb's JSON document: recommended.removal_rate_mm3_per_s")
-           .or_one()
-           .required(),
+           .or_one(),
        declared<Study>("options", Holds::table,
                        "of the job, as its requests have them; paths are relative to this file: at = [8000, 0.5]"),
-       key("seed", &Study::seed, "of samples; 1 where it is absent").at_least(0.0),
+       key("seed", &Study::seed, "of samples").at_least(0.0),
        key("chunk_points", &Study::chunk_points, "points that are done together; 0: as many as take a minute")
            .at_least(0.0)});
   return table;
@@ -150,6 +150,66 @@ const io::Schema<Variation>& vary_table() {
   return table;
 }
 
+const io::Schema<BoundaryTask>& boundary_task_table() {
+  static const io::Schema<BoundaryTask> table(
+      "boundary", "where a value crosses a level: the ranges on a grid are the coarse grid, which is refined there",
+      {key("value", &BoundaryTask::value, "as in study.collect: abs_mu@8000,0.5").required(),
+       key("level", &BoundaryTask::level, "that it crosses, in its unit"),
+       key("halvings", &BoundaryTask::halvings, "of the grid's steps").at_least(0.0).at_most(20.0),
+       key("most_points", &BoundaryTask::most_points, "that are done").at_least(1.0)});
+  return table;
+}
+
+const io::Schema<SensitivityTask>& sensitivity_task_table() {
+  static const io::Schema<SensitivityTask> table(
+      "sensitivity", "Sobol' indices of what is collected, over the keys with sampling = \"sobol\"",
+      {key("samples", &SensitivityTask::samples, "a power of two; each is as many points as keys, and two")
+           .at_least(8.0)
+           .required()});
+  return table;
+}
+
+const io::Schema<ProbabilityTask>& probability_task_table() {
+  static const io::Schema<ProbabilityTask> table(
+      "probability",
+      "how often a value keeps a condition over the keys that are sampled, for each combination of the others",
+      {key("value", &ProbabilityTask::values, "as in study.collect, or several in one unit: limit@8000")
+           .or_one()
+           .required(),
+       key("at_least", &ProbabilityTask::at_least, "the condition, in the value's unit").no_default(),
+       key("at_most", &ProbabilityTask::at_most, "or this").no_default(),
+       key("worst_share", &ProbabilityTask::worst_share,
+           "the robust optimum has the best value that this share of the points stays short of")
+           .at_least(0.0)
+           .below(1.0)});
+  return table;
+}
+
+namespace {
+
+/// [boundary], [sensitivity], [probability], with the values that they need.
+void read_tasks(io::TomlFile& file, Study& out) {
+  const auto collect = [&](const std::string& value) {
+    if (std::ranges::find(out.collect, value) == out.collect.end()) out.collect.push_back(value);
+  };
+  if (file.has("boundary")) {
+    boundary_task_table().read(file, "boundary", out.boundary.emplace(), "boundary.");
+    collect(out.boundary->value);
+  }
+  if (file.has("probability")) {
+    probability_task_table().read(file, "probability", out.probability.emplace(), "probability.");
+    std::ranges::for_each(out.probability->values, collect);
+  }
+  if (!file.has("sensitivity")) return;
+  sensitivity_task_table().read(file, "sensitivity", out.sensitivity.emplace(), "sensitivity.");
+  for (std::size_t i = 0; i < out.vary.size(); ++i) {
+    const bool given = file.has(fmt::format("vary[{}].count", i));
+    if (out.vary[i].is_sampled() && !given) out.vary[i].count = out.sensitivity->samples;
+  }
+}
+
+}  // namespace
+
 Study read_study(const io::TomlSource& source) {
   io::TomlFile file(source);
   Study out{.file = source.path};
@@ -161,6 +221,7 @@ Study read_study(const io::TomlSource& source) {
     require_one_of(file, row);
     vary_table().read(file, row, out.vary.emplace_back(), row + ".");
   }
+  read_tasks(file, out);
   out.notes = file.done();
   file.locate([&] { out.validate(); });
   return out;

@@ -48,7 +48,7 @@ const io::Schema<SweepPlan>& sweep_plan_table() {
       "study", "how a study is parted into chunks",
       {io::key("fingerprint", &SweepPlan::fingerprint,
                "of the study, the documents and files that it names, and the version: another one is another study"),
-       io::key("points", &SweepPlan::points, "of the study"),
+       io::key("points", &SweepPlan::points, "of the study; of a boundary at most so many"),
        io::key("chunk_points", &SweepPlan::chunk_points, "points of a chunk; the last may have fewer"),
        io::key("keys", &SweepPlan::keys, "that vary"),
        io::key("collect", &SweepPlan::collect, "what is kept of each point")},
@@ -113,12 +113,12 @@ SweepFolder::Locks SweepFolder::lock(int shard, int shards) const {
   return out;
 }
 
-std::filesystem::path SweepFolder::file_of(std::uint64_t chunk) const {
-  return folder_ / "chunks" / fmt::format("{:07}.chunk", chunk);
+std::filesystem::path SweepFolder::file_of(const SweepPlan& plan, std::uint64_t chunk) const {
+  return folder_ / "chunks" / fmt::format("{:07}.chunk", plan.first_chunk + chunk);
 }
 
 SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk, Chunk& out) const {
-  const std::filesystem::path path = file_of(chunk);
+  const std::filesystem::path path = file_of(plan, chunk);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return Found::missing;
   const io::ReadBack own(folder_);
@@ -133,10 +133,10 @@ SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk,
 }
 
 void SweepFolder::save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const {
-  io::write_file(file_of(chunk), chunk_bytes({.fingerprint = plan.fingerprint,
-                                              .processor = this_processor(),
-                                              .first = plan.first_of(chunk),
-                                              .points = points}));
+  io::write_file(file_of(plan, chunk), chunk_bytes({.fingerprint = plan.fingerprint,
+                                                    .processor = this_processor(),
+                                                    .first = plan.first_of(chunk),
+                                                    .points = points}));
 }
 
 }  // namespace robomill::jobs

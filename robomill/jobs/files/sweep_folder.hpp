@@ -20,11 +20,13 @@ struct SweepPlan {
   std::string fingerprint = {};  ///< of the study (fingerprint_of)
   std::uint64_t points = 0, chunk_points = 0;
   std::vector<std::string> keys = {}, collect = {};
+  std::uint64_t first_point = 0, first_chunk = 0;  ///< where points are known in parts, of which this is one
 
   [[nodiscard]] std::uint64_t chunks() const { return (points + chunk_points - 1) / chunk_points; }
-  [[nodiscard]] std::uint64_t first_of(std::uint64_t chunk) const { return chunk * chunk_points; }
+  /// Of the study's points.
+  [[nodiscard]] std::uint64_t first_of(std::uint64_t chunk) const { return first_point + chunk * chunk_points; }
   [[nodiscard]] std::uint64_t size_of(std::uint64_t chunk) const {
-    return std::min(chunk_points, points - first_of(chunk));
+    return std::min(chunk_points, points - chunk * chunk_points);
   }
 };
 
@@ -66,7 +68,7 @@ class SweepFolder {
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_ / name; }
 
  private:
-  [[nodiscard]] std::filesystem::path file_of(std::uint64_t chunk) const;
+  [[nodiscard]] std::filesystem::path file_of(const SweepPlan& plan, std::uint64_t chunk) const;
   std::filesystem::path folder_;
 };
 

@@ -21,28 +21,32 @@
 namespace robomill::jobs {
 namespace {
 
-/// @param take  of each point: its number, what the keys are set to, what became of it
-void for_each_point(const SweepPlan& plan, const StudyPoints& points, const SweepFolder& folder,
+/// @param take  of each point, in their order: what the keys are set to, what became of it
+void for_each_point(const DoneStudy& study,
                     const std::function<void(const std::vector<std::string>&, const PointOutcome&)>& take) {
   Chunk chunk;
-  for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
-    if (folder.find(plan, i, chunk) != SweepFolder::Found::there) {
-      throw InvalidInput(folder.at("chunks").string(), fmt::format("chunk {} is missing or damaged", i),
-                         "Run the study again");
+  for (const SweepPlan& plan : study.plans) {
+    for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+      if (study.folder.find(plan, i, chunk) != SweepFolder::Found::there) {
+        throw InvalidInput(study.folder.at("chunks").string(),
+                           fmt::format("chunk {} is missing or damaged", plan.first_chunk + i), "Run the study again");
+      }
+      for (std::size_t k = 0; k < chunk.points.size(); ++k) {
+        take(study.points.values(plan.first_of(i) + k), chunk.points[k]);
+      }
     }
-    for (std::size_t k = 0; k < chunk.points.size(); ++k) take(points.values(plan.first_of(i) + k), chunk.points[k]);
   }
 }
 
-void write_csv(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
-               const SweepFolder& folder) {
+void write_csv(const std::filesystem::path& path, const DoneStudy& study) {
+  const SweepPlan& plan = study.plans.front();
   io::LineFile out(path);
   std::string line;
   for (const std::vector<std::string>* names : {&plan.keys, &plan.collect}) {
     for (const std::string& name : *names) line += io::csv_text(name) + ',';
   }
   out.write(line + "state\n");
-  for_each_point(plan, points, folder, [&](const std::vector<std::string>& values, const PointOutcome& point) {
+  for_each_point(study, [&](const std::vector<std::string>& values, const PointOutcome& point) {
     line.clear();
     for (const std::string& value : values)
       line += (io::parse_number(value) ? value : io::csv_text(io::toml_unquoted(value))) + ',';
@@ -65,19 +69,19 @@ std::vector<std::size_t> longest_texts(const StudyPoints& points) {
   return out;
 }
 
-void write_hdf5(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
-                const SweepFolder& folder) {
+void write_hdf5(const std::filesystem::path& path, const DoneStudy& study) {
+  const SweepPlan& plan = study.plans.front();
   using Kind = io::Hdf5Table::Kind;
   io::Hdf5Table table(path);
   table.attribute("document", sweep_plan_table().info().document());
   table.attribute("fingerprint", plan.fingerprint);
-  const std::vector<std::size_t> longest = longest_texts(points);
+  const std::vector<std::size_t> longest = longest_texts(study.points);
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     table.column(plan.keys[k], io::unit_of_key(plan.keys[k]), longest[k] > 0 ? Kind::text : Kind::real, longest[k]);
   }
   for (const std::string& name : plan.collect) table.column(name, unit_of_collected(name));
   table.column("state", "", Kind::text, 8);
-  for_each_point(plan, points, folder, [&](const std::vector<std::string>& values, const PointOutcome& point) {
+  for_each_point(study, [&](const std::vector<std::string>& values, const PointOutcome& point) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (longest[k] > 0)
         table.put(io::toml_unquoted(values[k]));
@@ -91,14 +95,54 @@ void write_hdf5(const std::filesystem::path& path, const SweepPlan& plan, const 
   table.finish().commit();
 }
 
+void write_boundary_csv(const std::filesystem::path& path, const SweepPlan& plan, const Eigen::MatrixXd& points) {
+  io::LineFile out(path);
+  std::string line;
+  for (const std::string& name : plan.keys) line += (line.empty() ? "" : ",") + io::csv_text(name);
+  out.write(line + "\n");
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    line.clear();
+    for (Eigen::Index k = 0; k < points.cols(); ++k) line += fmt::format("{}{}", k == 0 ? "" : ",", points(i, k));
+    out.write(line + "\n");
+  }
+  out.close();
+}
+
+void write_boundary_hdf5(const std::filesystem::path& path, const SweepPlan& plan, const Eigen::MatrixXd& points) {
+  io::Hdf5Table table(path);
+  table.attribute("document", std::string("boundary/1"));
+  table.attribute("fingerprint", plan.fingerprint);
+  for (const std::string& name : plan.keys) table.column(name, io::unit_of_key(name));
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    for (Eigen::Index k = 0; k < points.cols(); ++k) table.put(points(i, k));
+    table.end_row();
+  }
+  table.finish().commit();
+}
+
+bool is_csv(const std::filesystem::path& path) {
+  const std::string ending = io::lowered(path.extension().string());
+  if (ending == ".csv") return true;
+  if (ending == ".h5" || ending == ".hdf5") return false;
+  throw InvalidInput(path.string(), "must end in .h5, .hdf5 or .csv");
+}
+
 }  // namespace
 
-void write_sweep_table(const std::filesystem::path& path, const SweepPlan& plan, const StudyPoints& points,
-                       const SweepFolder& folder) {
-  const std::string ending = io::lowered(path.extension().string());
-  if (ending == ".csv") return write_csv(path, plan, points, folder);
-  if (ending == ".h5" || ending == ".hdf5") return write_hdf5(path, plan, points, folder);
-  throw InvalidInput(path.string(), "must end in .h5, .hdf5 or .csv");
+void write_sweep_table(const std::filesystem::path& path, const DoneStudy& study) {
+  is_csv(path) ? write_csv(path, study) : write_hdf5(path, study);
+}
+
+void write_boundary_table(const std::filesystem::path& path, const SweepPlan& plan, const Boundary& boundary) {
+  is_csv(path) ? write_boundary_csv(path, plan, boundary.points) : write_boundary_hdf5(path, plan, boundary.points);
+}
+
+std::vector<std::vector<double>> columns_of(const DoneStudy& study) {
+  std::vector<std::vector<double>> out(study.plans.front().collect.size());
+  for_each_point(study, [&](const std::vector<std::string>&, const PointOutcome& point) {
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].push_back(point.values[i]);
+  });
+  return out;
 }
 
 }  // namespace robomill::jobs

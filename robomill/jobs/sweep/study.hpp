@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,31 @@ struct Variation {
   std::array<double, 2> range = {0.0, 0.0};           ///< in the key's unit; where there are no values
   int count = 0;                                      ///< of values in the range, >= 1; >= 2 on a grid
   Sampling sampling = Sampling::grid;
+
+  [[nodiscard]] bool is_sampled() const { return values.empty() && sampling != Sampling::grid; }
+};
+
+/// Where a value crosses a level, in place of all points of a grid (sweep/boundary.hpp). All keys have ranges on a
+/// grid: the coarse one.
+struct BoundaryTask {
+  std::string value = {};  ///< that is collected
+  double level = 1.0;      ///< in the value's unit
+  int halvings = 4;        ///< of the grid's steps
+  int most_points = 100'000;
+};
+
+/// Sobol' indices of all values that are collected (sweep/sensitivity.hpp) over the keys that are sampled, all by the
+/// Sobol' sequence. Their count is `samples`; each sample is keys + 2 points.
+struct SensitivityTask {
+  int samples = 0;  ///< a power of two
+};
+
+/// How often values keep a condition over the keys that are sampled, at each combination of the others
+/// (sweep/probability.hpp).
+struct ProbabilityTask {
+  std::vector<std::string> values = {};               ///< that are collected, in one unit
+  std::optional<double> at_least = {}, at_most = {};  ///< in that unit; one of both
+  double worst_share = 0.05;                          ///< of the quantile that the robust optimum is chosen by
 };
 
 /// study.toml: a job that is done again and again with other values of some keys.
@@ -45,9 +71,12 @@ struct ROBOMILL_API Study {
   std::filesystem::path base = {};        ///< its document
   std::string options = {};               ///< of the job: the text of a JSON object; empty: none
   std::vector<std::string> collect = {};  ///< what is kept of each result, see above
-  std::uint64_t seed = 1;                 ///< of samples
+  int seed = 1;                           ///< of samples, >= 0
   std::vector<Variation> vary = {};
   int chunk_points = 0;  ///< points of a chunk; 0: as many as take a minute
+  std::optional<BoundaryTask> boundary = {};
+  std::optional<SensitivityTask> sensitivity = {};
+  std::optional<ProbabilityTask> probability = {};
   std::vector<std::string> notes = {};
 
   /// @throws InvalidInput naming the member
@@ -61,6 +90,10 @@ class ROBOMILL_API StudyPoints {
  public:
   /// @throws InvalidInput as Study::validate, or if there are more than 1e9
   explicit StudyPoints(const Study& study);
+  /// No points; each is added.
+  explicit StudyPoints(std::vector<std::string> keys);
+  /// @param values  a value a key, as TOML writes it
+  void add(std::vector<std::string> values);
 
   [[nodiscard]] std::size_t size() const { return size_; }
   /// The keys that vary, in the order of the study.
@@ -69,16 +102,25 @@ class ROBOMILL_API StudyPoints {
   [[nodiscard]] std::vector<std::string> values(std::size_t point) const;
   [[nodiscard]] std::vector<io::TomlSetting> settings(std::size_t point) const;
 
+  // The same points as combinations of the values that are not sampled, each with all samples.
+  [[nodiscard]] std::size_t combinations() const { return combinations_; }
+  [[nodiscard]] std::size_t samples() const { return size_ / combinations_; }
+  [[nodiscard]] std::size_t point(std::size_t combination, std::size_t sample) const;
+  /// The keys that are not sampled.
+  [[nodiscard]] std::vector<io::TomlSetting> settled(std::size_t combination) const;
+
  private:
   /// Keys of one place in the product.
   struct Axis {
     std::vector<std::size_t> places = {};             ///< of its keys in keys_
     std::vector<std::vector<std::string>> rows = {};  ///< a value a key
-    std::size_t stride = 1;                           ///< points between two of its rows
+    bool sampled = false;
+    std::size_t stride = 1;  ///< points between two of its rows
   };
+  void set_strides();
   std::vector<std::string> keys_ = {};
   std::vector<Axis> axes_ = {};
-  std::size_t size_ = 1;
+  std::size_t size_ = 1, combinations_ = 1;
 };
 
 }  // namespace robomill::jobs

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robomill/io/text.hpp"
+#include "robomill/jobs/sweep/samples.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -98,6 +99,49 @@ TEST(StudyPoints, DependOnTheSeedAlone) {
   study.seed = 2;
   const StudyPoints other(study);
   EXPECT_NE(one.values(0), other.values(0));
+}
+
+// Each point once, as a combination of what is not sampled and a sample.
+TEST(StudyPoints, AreCombinationsEachWithAllSamples) {
+  const StudyPoints points(study_of({ranged("a", 4, Sampling::sobol),
+                                     {.keys = {"b", "c"}, .values = {{"1", "10"}, {"2", "20"}}},
+                                     ranged("d", 3, Sampling::lhs),
+                                     ranged("e", 2, Sampling::grid),
+                                     ranged("f", 4, Sampling::sobol)}));
+  ASSERT_EQ(points.combinations(), 4U);
+  ASSERT_EQ(points.samples(), 12U);
+  std::set<std::size_t> each;
+  for (std::size_t c = 0; c < points.combinations(); ++c) {
+    const std::vector<io::TomlSetting> settled = points.settled(c);
+    ASSERT_EQ(settled.size(), 3U);
+    EXPECT_EQ(settled[2].key, "e");
+    for (std::size_t s = 0; s < points.samples(); ++s) {
+      const std::size_t point = points.point(c, s);
+      EXPECT_TRUE(each.insert(point).second);
+      ASSERT_LT(point, points.size());
+      const std::vector<std::string> values = points.values(point);
+      EXPECT_EQ(values[1], settled[0].value);
+      EXPECT_EQ(values[2], settled[1].value);
+      EXPECT_EQ(values[4], settled[2].value);
+    }
+  }
+  EXPECT_EQ(each.size(), points.size());
+}
+
+TEST(StudyPoints, OfIndicesAreItsSamplesInTheirOrder) {
+  Study study = study_of({ranged("a", 8, Sampling::sobol, 0.0, 1.0),
+                          {.keys = {"b"}, .values = {{"1"}, {"2"}}},
+                          ranged("c", 8, Sampling::sobol, 0.0, 1.0)});
+  study.sensitivity = SensitivityTask{.samples = 8};
+  const StudyPoints points(study);
+  const Shares samples = saltelli_samples(8, 2, 1);
+  ASSERT_EQ(points.samples(), samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::vector<std::string> values = points.values(points.point(1, i));
+    EXPECT_EQ(*io::parse_number(values[0]), samples[i][0]);
+    EXPECT_EQ(values[1], "2");
+    EXPECT_EQ(*io::parse_number(values[2]), samples[i][1]);
+  }
 }
 
 TEST(Study, RejectsWhatItCannotVary) {

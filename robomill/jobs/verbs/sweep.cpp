@@ -34,8 +34,9 @@ std::string points_text(const SweepResult& result) {
 std::string summary_of(const SweepJob& job, const SweepResult& result) {
   std::string out;
   if (job.dry_run) {
-    out = fmt::format("{} points. The one in the middle took {:.3g} s of one thread: {:.3g} h in all.\n", result.points,
-                      result.point_s, result.point_s * static_cast<double>(result.points) / 3600.0);
+    out = fmt::format("{}{} points. The one in the middle took {:.3g} s of one thread: {:.3g} h in all.\n",
+                      result.study.boundary ? "At most " : "", result.points, result.point_s,
+                      result.point_s * static_cast<double>(result.points) / 3600.0);
   } else {
     out = fmt::format("{} points in {} chunks of {}: {} chunks are done, {} by this run.\n", result.points,
                       result.chunks, result.chunk_points, result.done_chunks, result.ran_chunks) +
@@ -53,6 +54,7 @@ std::string summary_of(const SweepJob& job, const SweepResult& result) {
     out += "Warning: several kinds of processors worked: the last bits of their results may differ:\n";
     for (const std::string& processor : result.processors) out += "  " + printable(processor) + "\n";
   }
+  for (const std::string& line : result.findings) out += line + "\n";
   for (const std::string& file : result.written) out += "wrote " + printable(file) + "\n";
   return out;
 }
