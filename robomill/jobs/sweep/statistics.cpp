@@ -90,7 +90,7 @@ std::string at_text(const Settled& at) {
 /// What was left out of a result, and what that means; empty: nothing.
 std::string left_out_text(std::size_t left_out, std::size_t of, const char* what) {
   if (left_out == 0) return {};
-  std::string out = fmt::format("; {} of {} {} without a value left out", left_out, of, what);
+  std::string out = fmt::format("; {} of {} {} left out", left_out, of, what);
   if (static_cast<double>(left_out) > much * static_cast<double>(of)) out += ", which may bias it";
   return out;
 }
@@ -128,7 +128,8 @@ std::string estimate_text(const Estimate& one) {
 void add_sensitivity(const SensitivityRow& row, std::vector<std::string>& lines) {
   const std::string name = printable(row.value) + (row.at.empty() ? "" : " at " + at_text(row.at));
   const SobolIndices& found = row.indices;
-  const std::string left_out = left_out_text(found.left_out, found.samples + found.left_out, "samples");
+  const std::string left_out =
+      left_out_text(found.left_out, found.samples + found.left_out, "samples without finite values");
   if (found.status != SobolStatus::found) {
     lines.push_back(fmt::format("{}: {}{}.", name,
                                 found.status == SobolStatus::constant ? "is constant, no key matters"
@@ -147,7 +148,7 @@ std::string probability_text(const ProbabilityRow& row) {
   const ConditionShare& found = row.share;
   return fmt::format("{}{}{}: {} of {} points{}", printable(row.value), row.at.empty() ? "" : " at ", at_text(row.at),
                      estimate_text(found.share), found.points,
-                     left_out_text(found.left_out, found.points + found.left_out, "points"));
+                     left_out_text(found.left_out, found.points + found.left_out, "points without a value"));
 }
 
 void add_probability(const ProbabilityStatistics& found, std::vector<std::string>& lines) {
