@@ -208,11 +208,13 @@ class Writer:
             f"{self.names(function, [*given, function.parameters[-1]])}, {literal(self.documentation(function, struct))}"
 
     def documentation(self, function, struct=None):
-        """With a signature for inspect.signature in front, where a name means one function."""
+        """With a signature for inspect.signature in front where a name means one function, else with how it is called."""
         group = struct.methods if struct is not None else self.library.functions
         alone = sum(1 for one in group if one.name == function.name and one.owner == function.owner) == 1
-        head = self.docs.function_signature(function, struct is not None and not function.is_static) if alone else ""
-        return head + self.docs.function(function)
+        is_method = struct is not None and not function.is_static
+        if not alone:
+            return self.docs.overload(function, is_method)
+        return self.docs.function_signature(function, is_method) + self.docs.function(function)
 
     def call(self, function, struct=None):
         """The lambda that calls a function, its names and its documentation; None where it cannot be bound."""

@@ -199,12 +199,16 @@ class Docs:
     def made_by_library(self, struct):
         return not self.types.refers(struct) and any(one.type.endswith("&") or "unique_ptr" in one.type for one in struct.fields)
 
-    def signature(self, name, parameters, is_method=False):
-        """What inspect.signature reads from the head of a docstring."""
+    def head(self, name, parameters, is_method=False):
+        """How it is called."""
         parts = ["self"] if is_method else []
         if parameters:
             parts += ["*", *(python_name(one) + (f"={default}" if default is not None else "") for one, default in parameters)]
-        return f"{name}({', '.join(parts)})\n--\n\n"
+        return f"{name}({', '.join(parts)})\n"
+
+    def signature(self, name, parameters, is_method=False):
+        """What inspect.signature reads from the head of a docstring."""
+        return self.head(name, parameters, is_method) + "--\n\n"
 
     @staticmethod
     def literal(default):
@@ -214,10 +218,16 @@ class Docs:
         text = value(default, "")
         return text if re.fullmatch(r"-?[\d.]+(?:e-?\d+)?|True|False|None|\"[^\"]*\"", text) else "..."
 
-    def function_signature(self, function, is_method):
+    def parameters(self, function):
         call = python_call(function, self.types)
-        parameters = [(one.name, self.literal(one.default)) for one in call.given] + ([("progress", "None")] if call.progress else [])
-        return self.signature(python_name(function.name), parameters, is_method)
+        return [(one.name, self.literal(one.default)) for one in call.given] + ([("progress", "None")] if call.progress else [])
+
+    def function_signature(self, function, is_method):
+        return self.signature(python_name(function.name), self.parameters(function), is_method)
+
+    def overload(self, function, is_method):
+        """One of several functions of a name, whose docstrings stand one after the other."""
+        return f"{self.head(python_name(function.name), self.parameters(function), is_method)}\n{self.function(function)}\n"
 
     def constructor_signature(self, struct, one):
         if len(struct.constructors) != 1:

@@ -142,6 +142,11 @@ def documented():
                 yield from ((f"{name}.{key}", getattr(scope, key)) for key in vars(scope) if not key.startswith("_") and callable(getattr(scope, key)))
 
 
+def test_docstrings_of_overloads_begin_with_how_each_is_called():
+    text = modal.write_frfs.__doc__
+    assert text.index("write_frfs(*, path, set, options=...)\n\n") < text.index("\n\nwrite_frfs(*, path, result, options=...)\n\n")
+
+
 def test_signatures_and_docstrings_have_the_same_parameters():
     checked = 0
     for name, thing in documented():
