@@ -73,7 +73,7 @@ function(robomill_stage)
     set_property(GLOBAL APPEND PROPERTY ROBOMILL_PUBLIC_HEADERS robomill/${S_NAME}/${header})
   endforeach()
 
-  if(ROBOMILL_TESTS AND NOT ROBOMILL_SANITIZE)
+  if(ROBOMILL_TESTS AND ROBOMILL_ALONE_HEADERS)
     # A public header that needs another one first does not compile here.
     set(alone "")
     foreach(header IN LISTS S_PUBLIC_HEADERS)
