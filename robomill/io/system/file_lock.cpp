@@ -29,4 +29,8 @@ FileLock FileLock::take(const std::filesystem::path& path, Kind kind) {
   return *locked(path, kind == Kind::shared ? LOCK_SH : LOCK_EX);
 }
 
+void FileLock::note(std::string_view text) const noexcept {
+  if (resize_file(file_.get(), 0) == 0) static_cast<void>(write_all_at(file_.get(), text, 0));
+}
+
 }  // namespace robomill::io

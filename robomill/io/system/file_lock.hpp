@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "robomill/io/system/descriptor.hpp"
@@ -19,6 +20,9 @@ class FileLock {
   [[nodiscard]] static std::optional<FileLock> try_take(const std::filesystem::path& path, Kind kind);
   /// Waits for it. @throws InvalidInput as try_take
   [[nodiscard]] static FileLock take(const std::filesystem::path& path, Kind kind);
+
+  /// Replaces what stands in its file, for whoever looks at it. What cannot be written is left out.
+  void note(std::string_view text) const noexcept;
 
  private:
   explicit FileLock(Descriptor file) : file_(std::move(file)) {}
