@@ -11,21 +11,22 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/jobs/files/slurm_jobs.hpp"
 #include "robomill/jobs/files/statistics_json.hpp"
 #include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/files/sweep_tables.hpp"
+#include "robomill/jobs/sweep/chunks.hpp"
 #include "robomill/jobs/sweep/evaluate.hpp"
 #include "robomill/jobs/sweep/statistics.hpp"
+#include "robomill/jobs/sweep/tasks.hpp"
 
 namespace robomill::jobs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of one thread. A chunk is what a run that is killed loses at most.
-constexpr double chunk_s = 60.0;
-constexpr std::size_t most_chunk_points = 100'000, most_reasons = 5, most_processors = 20;
+constexpr std::size_t most_reasons = 5, most_processors = 20;
 
 void add_once(std::vector<std::string>& to, const std::string& text, std::size_t most) {
   if (!text.empty() && to.size() < most && std::ranges::find(to, text) == to.end()) to.push_back(text);
@@ -73,31 +74,27 @@ class Sweep {
         points_(study_),
         evaluator_(study_),
         folder_(job.folder) {
-    if (study_.boundary && job.shards > 1) {
-      throw InvalidInput("shard", "is not for a study with [boundary]",
-                         "Which points are next depends on those before. One run does a step on all threads");
-    }
+    if (job.shards > 1 || job.slurm) require_known_points(study_, job.slurm ? "slurm" : "shard");
     result_.study = study_;
-    result_.points = study_.boundary ? static_cast<std::uint64_t>(study_.boundary->most_points) : points_.size();
+    result_.points = most_points_of(study_, points_);
   }
 
   SweepResult run() {
+    if (job_.slurm) {
+      submit();
+      return std::move(result_);
+    }
     if (job_.dry_run) {
       try_one();
       return std::move(result_);
     }
-    SweepPlan plan = {.fingerprint = fingerprint_of(study_),
-                      .points = result_.points,
-                      .keys = points_.keys(),
-                      .collect = study_.collect};
-    std::optional<SweepFolder::Locks> locks;
-    if (job_.status) {
-      const SweepPlan there = folder_.plan();
-      folder_.require_same(there, plan);
-      plan = there;
+    SweepPlan plan;
+    if (job_.status || !job_.merge.empty()) {
+      plan = folder_.plan();
+      folder_.require_same(plan, plan_of(study_, points_));
     } else {
-      plan = folder_.begin(std::move(plan), [this] { return chunk_points(); });
-      locks = folder_.lock(job_.shard, job_.shards);
+      plan = begin();
+      locks_ = folder_.lock(job_.shard, job_.shards);
     }
     if (study_.boundary) {
       trace(plan);
@@ -107,23 +104,16 @@ class Sweep {
     result_.points = points_.size();
     result_.chunk_points = plan.chunk_points;
     look_at_chunks();
+    if (job_.status) look_at_runs();
     if (!job_.status) write_tables();
     if (!job_.status && result_.complete() && job_.shards == 1) write_findings();
     return std::move(result_);
   }
 
  private:
-  /// A point in the middle, since those at the edges may be out of range.
-  /// @return the seconds that it took
-  double measure(PointOutcome& outcome) {
-    const Clock::time_point begin = Clock::now();
-    outcome = evaluator_.at(points_.settings(points_.size() / 2), progress_);
-    return seconds_since(begin);
-  }
-
   void try_one() {
     PointOutcome outcome;
-    result_.point_s = measure(outcome);
+    result_.point_s = point_seconds(points_, evaluator_, progress_, outcome);
     add_once(result_.reasons, outcome.reason, most_reasons);
     count_state(outcome.state, result_);
     for (std::size_t i = 0; i < outcome.values.size(); ++i) {
@@ -131,12 +121,7 @@ class Sweep {
     }
   }
 
-  std::uint64_t chunk_points() {
-    if (study_.chunk_points > 0) return static_cast<std::uint64_t>(study_.chunk_points);
-    PointOutcome ignored;
-    const double points = chunk_s / std::max(measure(ignored), 1e-6);
-    return static_cast<std::uint64_t>(std::clamp(points, 1.0, static_cast<double>(most_chunk_points)));
-  }
+  std::uint64_t chunk_points() { return fitting_chunk_points(study_, points_, evaluator_, progress_); }
 
   /// The chunks of this shard that are not done.
   std::vector<std::uint64_t> missing_chunks(const SweepPlan& plan) {
@@ -154,7 +139,7 @@ class Sweep {
 
   void add(const SweepPlan& plan) {
     plans_.push_back(plan);
-    if (!job_.status) do_chunks(plan);
+    if (locks_) do_chunks(plan);
   }
 
   struct Unfinished {};
@@ -205,52 +190,107 @@ class Sweep {
     std::uint64_t points = 0;
     for (const std::uint64_t chunk : missing) points += plan.size_of(chunk);
     progress_.start("points", points);
-    const Clock::time_point begin = Clock::now();
+    SweepFolder::note(*locks_, ran_points_, ran_thread_s_, thread_count());
     for (const std::uint64_t chunk : missing) {
-      const std::vector<PointOutcome> outcomes = outcomes_of(plan, chunk);
-      require_unchanged(plan);
+      const Clock::time_point begin = Clock::now();
+      const std::vector<PointOutcome> outcomes =
+          outcomes_of(evaluator_, points_, plan.first_of(chunk), plan.size_of(chunk), progress_);
+      require_unchanged(study_, plan.fingerprint);
       folder_.save(plan, chunk, outcomes);
+      ran_points_ += plan.size_of(chunk);
+      ran_thread_s_ += seconds_since(begin) * std::max(thread_count(), 1);
+      SweepFolder::note(*locks_, ran_points_, ran_thread_s_, thread_count());
+      result_.point_s = ran_thread_s_ / static_cast<double>(ran_points_);
       ++result_.ran_chunks;
     }
-    if (points == 0) return;
-    result_.point_s = seconds_since(begin) * std::max(thread_count(), 1) / static_cast<double>(points);
-  }
-
-  /// Points are computed from the files as they stood when the study began.
-  void require_unchanged(const SweepPlan& plan) const {
-    if (fingerprint_of(study_) == plan.fingerprint) return;
-    throw InvalidInput(study_.file.string(), "or a file that it names has changed while the study ran",
-                       "The points that were just done are dropped");
-  }
-
-  std::vector<PointOutcome> outcomes_of(const SweepPlan& plan, std::uint64_t chunk) {
-    const std::uint64_t first = plan.first_of(chunk);
-    std::vector<PointOutcome> out(plan.size_of(chunk));
-    parallel_for(out.size(), 1, [&](std::size_t from, std::size_t to) {
-      const ThreadLimit alone(1);
-      for (std::size_t i = from; i < to; ++i) {
-        Progress inside([this](const std::string&, double) { progress_.check(); }, nullptr);
-        out[i] = evaluator_.at(points_.settings(first + i), inside);
-        // Once more: what could not be read for a moment is no fault of the point.
-        if (out[i].state == PointState::rejected) out[i] = evaluator_.at(points_.settings(first + i), inside);
-        progress_.advance();
-      }
-    });
-    return out;
   }
 
   void look_at_chunks() {
     Seen seen(study_.collect);
     Chunk chunk;
+    // A shard looks at its own chunks alone: each of a thousand would read all of them.
+    const bool all = !locks_ || job_.shards == 1;
+    const auto first = static_cast<std::uint64_t>(all ? 0 : job_.shard - 1);
+    const auto step = static_cast<std::uint64_t>(all ? 1 : job_.shards);
     for (const SweepPlan& plan : plans_) {
       result_.chunks += plan.chunks();
-      for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+      there_.resize(there_.size() + plan.chunks(), false);
+      for (std::uint64_t i = first; i < plan.chunks(); i += step) {
         if (folder_.find(plan, i, chunk) != SweepFolder::Found::there) continue;
         ++result_.done_chunks;
+        there_[plan.first_chunk + i] = true;
         seen.count(chunk, result_);
       }
     }
     if (result_.done_chunks > 0) result_.absent = seen.absent();
+  }
+
+  [[nodiscard]] SweepPlan begin() {
+    return folder_.begin(plan_of(study_, points_), [this] { return chunk_points(); });
+  }
+
+  /// Who works here, and how long it will take at what points took so far.
+  void look_at_runs() {
+    const SweepFolder::Work work = folder_.work();
+    result_.running = work.running;
+    int threads = work.threads;
+    if (const std::optional<SlurmJobs> jobs = SlurmFolder(job_.folder).jobs()) {
+      result_.tasks = tasks_of(*jobs, there_, work.running);
+      std::error_code ignored;
+      result_.tasks.has_tables = std::filesystem::exists(folder_.at("results.csv"), ignored);
+      threads = std::max(threads, result_.tasks.running * study_.slurm.cpus);
+    }
+    const std::uint64_t looked_at = result_.done + result_.short_of + result_.rejected;
+    const std::uint64_t left = result_.points - std::min(result_.points, looked_at);
+    if (work.points > 0.0) {
+      result_.point_s = work.thread_s / work.points;
+      result_.left_thread_s = result_.point_s * static_cast<double>(left);
+      if (threads > 0) result_.left_s = result_.left_thread_s / threads;
+    }
+  }
+
+  void submit() {
+    if (study_.slurm.shards == 0) {
+      throw InvalidInput(study_.file.string(), "has no [slurm] table",
+                         "As: [slurm] shards = 16, time_min = 120, memory_mb = 2000");
+    }
+    SweepPlan plan;
+    if (job_.dry_run) {
+      plan = {.points = points_.size(), .chunk_points = std::min<std::uint64_t>(chunk_points(), points_.size())};
+    } else {
+      plan = begin();
+    }
+    result_.chunk_points = plan.chunk_points;
+    plans_.push_back(plan);
+    const int shards =
+        static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(study_.slurm.shards), plan.chunks()));
+    const std::filesystem::path folder = job_.folder.empty() ? "FOLDER" : job_.folder;
+    const SlurmScripts scripts = slurm_scripts(
+        study_.slurm, {.program = slurm_program(), .study = whole(job_.study), .folder = whole(folder)}, shards);
+    if (job_.dry_run) {
+      result_.chunks = plan.chunks();
+      result_.tasks = {.tasks = shards, .array_script = scripts.array, .merge_script = scripts.merge};
+      return;
+    }
+    look_at_chunks();
+    const SlurmFolder slurm(job_.folder);
+    require_idle(slurm);
+    const SlurmJobs jobs = slurm.submit(scripts, shards);
+    result_.tasks = tasks_of(jobs, there_, {});
+    for (const char* name : {"array.sh", "merge.sh"}) result_.written.push_back(slurm.at(name).string());
+  }
+
+  /// Two arrays would wait for each other's chunks.
+  void require_idle(const SlurmFolder& slurm) const {
+    const std::optional<SlurmJobs> jobs = slurm.jobs();
+    const SweepTasks before = jobs ? tasks_of(*jobs, there_, {}) : SweepTasks();
+    if (before.running + before.waiting == 0) return;
+    throw InvalidInput(job_.folder.string(), fmt::format("is being worked on by job {} of Slurm", before.array),
+                       fmt::format("scancel {} ends it", before.array));
+  }
+
+  static std::filesystem::path whole(const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
   }
 
   [[nodiscard]] DoneStudy done_study() const { return {.plans = plans_, .points = points_, .folder = folder_}; }
@@ -269,7 +309,7 @@ class Sweep {
     if (!result_.complete()) {
       throw InvalidInput(job_.merge.string(),
                          fmt::format("needs all chunks: {} of {} are done", result_.done_chunks, result_.chunks),
-                         "Run the other shards first");
+                         "Run the study, or its other shards, first");
     }
     for (const std::filesystem::path& table : tables) {
       write_sweep_table(table, done_study());
@@ -302,9 +342,13 @@ class Sweep {
   StudyPoints points_;
   Evaluator evaluator_;
   SweepFolder folder_;
-  SweepResult result_;
-  std::vector<SweepPlan> plans_ = {};  ///< one, but of a boundary one a step
+  std::optional<SweepFolder::Locks> locks_ = {};  ///< of a run that does chunks
+  std::vector<SweepPlan> plans_ = {};             ///< one, but of a boundary one a step
+  std::vector<bool> there_ = {};                  ///< which chunks are done
+  std::uint64_t ran_points_ = 0;                  ///< by this run
+  double ran_thread_s_ = 0.0;
   std::optional<Boundary> boundary_ = {};
+  SweepResult result_;
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "robomill/io/table.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/sweep/chunks.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -244,6 +245,49 @@ TEST_F(Sweeps, ExcludeEachOtherOnOneFolder) {
   EXPECT_TRUE(status.complete()) << "whoever asks how far it is does not wait";
 }
 
+// Whoever hands chunks out to processes of his own gets the same bytes.
+TEST_F(Sweeps, AreDoneChunkByChunkElsewhere) {
+  run("whole");
+  const StudyChunks chunks(folder_.at("study.toml"));
+  {
+    StudyFolder kept(folder_.at("study.toml"), folder_.at("out"));
+    EXPECT_EQ(kept.fingerprint(), chunks.fingerprint());
+    EXPECT_EQ(kept.todo(), (std::vector<std::uint64_t>{0, 1, 2}));
+    EXPECT_NE(rejection([&] { run("out"); }).find("is being worked on by another run"), std::string::npos);
+    for (const std::uint64_t chunk : {2U, 0U}) {
+      const std::string done = chunks.bytes_of(chunk, kept.chunk_points(), Progress::none());
+      EXPECT_EQ(done, bytes(fmt::format("whole/chunks/{:07}.chunk", chunk)));
+      kept.save(chunk, done);
+      EXPECT_NE(rejection([&] { kept.save(1, done); }).find("are not those of it"), std::string::npos);
+      EXPECT_NE(rejection([&] { kept.save(3, done); }).find("is none of the study"), std::string::npos);
+    }
+  }
+  const StudyFolder again(folder_.at("study.toml"), folder_.at("out"));
+  EXPECT_EQ(again.todo(), std::vector<std::uint64_t>{1});
+}
+
+// What a study asks of a cluster changes no result.
+TEST_F(Sweeps, GoOnWithOtherSettingsOfACluster) {
+  run("out");
+  const std::string before = bytes("study.toml");
+  folder_.file("study.toml", before + "[slurm]\nshards = 2\ntime_min = 60\npartition = \"short\"\n");
+  EXPECT_EQ(run("out").ran_chunks, 0U);
+  folder_.file("study.toml", before + "[slurm]\nshards = 2\ntime_min = 2\n");
+  EXPECT_NE(rejection([&] { run("out"); }).find("slurm.time_min = 2 min; must be >= 5"), std::string::npos);
+}
+
+// A folder says who works there and how long points took.
+TEST_F(Sweeps, SayWhatIsLeft) {
+  for (const int shard : {1, 2}) run("out", shard, 3);
+  const SweepFolder::Locks other = SweepFolder(folder_.at("out")).lock(3, 3);
+  const SweepResult status =
+      run_sweep({.study = folder_.at("study.toml"), .folder = folder_.at("out"), .status = true});
+  EXPECT_EQ(status.running, std::vector<std::string>{"3/3"});
+  EXPECT_GT(status.point_s, 0.0);
+  EXPECT_DOUBLE_EQ(status.left_thread_s, status.point_s * static_cast<double>(status.points - status.done));
+  EXPECT_DOUBLE_EQ(status.left_s, status.left_thread_s) << "of the one thread of the other run";
+}
+
 // A disk that is full anywhere between the first file and the last.
 TEST_F(Sweeps, LeaveNoHalfFileOnAFullDisk) {
   many_points();
@@ -258,7 +302,7 @@ TEST_F(Sweeps, LeaveNoHalfFileOnAFullDisk) {
       ++failed;
     }
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.at(into))) {
-      if (!entry.is_regular_file() || entry.file_size() == 0) continue;  // a lock
+      if (!entry.is_regular_file() || entry.path().extension() == ".lock") continue;
       const std::string name = std::filesystem::relative(entry.path(), folder_.at(into)).string();
       EXPECT_EQ(io::read_file(entry.path()), bytes("whole/" + name)) << into << ": " << name;
     }

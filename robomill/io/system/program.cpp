@@ -66,7 +66,8 @@ bool read_some(int from, std::string& into, std::size_t most_bytes) {
 }
 
 /// Until both ends are closed; false where the time is over before.
-bool read_both(std::array<Descriptor, 2>& from, ProgramEnd& into, std::size_t most_bytes, ProgramClock::time_point end) {
+bool read_both(std::array<Descriptor, 2>& from, ProgramEnd& into, std::size_t most_bytes,
+               ProgramClock::time_point end) {
   while (from[0].is_open() || from[1].is_open()) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - ProgramClock::now()).count();
     if (left <= 0) return false;
@@ -74,7 +75,8 @@ bool read_both(std::array<Descriptor, 2>& from, ProgramEnd& into, std::size_t mo
     if (::poll(waits.data(), waits.size(), static_cast<int>(left)) < 0 && errno != EINTR) return false;
     for (std::size_t i = 0; i < waits.size(); ++i) {
       if (waits[i].revents == 0) continue;
-      if (!read_some(from[i].get(), i == 0 ? into.said : into.complaint, most_bytes)) static_cast<void>(from[i].close());
+      if (!read_some(from[i].get(), i == 0 ? into.said : into.complaint, most_bytes))
+        static_cast<void>(from[i].close());
     }
   }
   return true;

@@ -14,7 +14,7 @@ struct ProgramEnd {
 };
 
 struct ProgramLimits {
-  std::chrono::milliseconds time{120'000};       ///< by the clock; then it is killed
+  std::chrono::milliseconds time{120'000};           ///< by the clock; then it is killed
   std::size_t output_bytes = std::size_t{64} << 20;  ///< that are kept of each output
 };
 

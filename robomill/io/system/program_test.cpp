@@ -32,7 +32,8 @@ TEST(Programs, ThatAreNotThereAreReported) {
 
 // More than a pipe holds on both outputs at once: none waits for the other.
 TEST(Programs, SayMuch) {
-  const ProgramEnd end = run_program({"sh", "-c", "head -c 300000 /dev/zero; head -c 300000 /dev/zero >&2"}, {.output_bytes = 200'000});
+  const ProgramEnd end =
+      run_program({"sh", "-c", "head -c 300000 /dev/zero; head -c 300000 /dev/zero >&2"}, {.output_bytes = 200'000});
   EXPECT_EQ(end.code, 0);
   EXPECT_EQ(end.said.size(), 200'000U);
   EXPECT_EQ(end.complaint.size(), 200'000U);

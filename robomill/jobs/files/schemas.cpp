@@ -25,6 +25,7 @@
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/files/postures_json.hpp"
 #include "robomill/jobs/files/signal_json.hpp"
+#include "robomill/jobs/files/slurm_jobs.hpp"
 #include "robomill/jobs/files/statistics_json.hpp"
 #include "robomill/jobs/files/study_schema.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
@@ -178,10 +179,10 @@ const std::vector<TableInfo>& toml_documents() {
       toml_document("monitor.toml", "a running accelerometer, the cut and the detector", shared_tables()),
       toml_document("assembly.toml", "a tool in a holder", assembly_tables()),
       toml_document("recordings.toml", "labelled recordings of cuts", recordings_tables()),
-      toml_document(
-          "study.toml", "a job done for many values of its document's keys",
-          {table("study", study_table()), table("vary", vary_table(), 1), table("boundary", boundary_task_table()),
-           table("sensitivity", sensitivity_task_table()), table("probability", probability_task_table())}),
+      toml_document("study.toml", "a job done for many values of its document's keys",
+                    {table("study", study_table()), table("vary", vary_table(), 1),
+                     table("boundary", boundary_task_table()), table("sensitivity", sensitivity_task_table()),
+                     table("probability", probability_task_table()), table("slurm", slurm_table())}),
       toml_document("materials.toml", "force coefficients of workpiece materials",
                     {{.name = "materials",
                       .holds = Holds::table,
@@ -227,7 +228,8 @@ const std::vector<Entry>& documents() {
                                    &signal_coefficients_document(),
                                    &live::recorded_run_table().info(),
                                    &sweep_plan_table().info(),
-                                   &statistics_table().info()})
+                                   &statistics_table().info(),
+                                   &slurm_jobs_table().info()})
       out.push_back({table->name + ".json", *table});
     return out;
   }();

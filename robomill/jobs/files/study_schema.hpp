@@ -14,5 +14,7 @@ namespace robomill::jobs {
 [[nodiscard]] const io::Schema<SensitivityTask>& sensitivity_task_table();
 /// [probability]
 [[nodiscard]] const io::Schema<ProbabilityTask>& probability_task_table();
+/// [slurm]
+[[nodiscard]] const io::Schema<SlurmSettings>& slurm_table();
 
 }  // namespace robomill::jobs

@@ -87,6 +87,18 @@ std::string options_of(io::TomlFile& file) {
   return io::plain_text(out);
 }
 
+/// The study but for what it asks of a cluster, which changes no result; and the files that it names.
+void add_study(const std::filesystem::path& file, Digest& digest) {
+  for (const io::TomlValue& value : io::toml_values(io::read_file(file), file.string())) {
+    if (value.key.starts_with("slurm.")) continue;
+    digest.text(value.key);
+    digest.text(value.value.dump());
+  }
+  for (const std::filesystem::path& named : files_named_in(file, Unreadable::rejected)) {
+    digest.text(io::read_file(named));
+  }
+}
+
 /// A file, and the files that it names, by their content.
 void add_file(const std::filesystem::path& file, Digest& digest) {
   digest.text(io::read_file(file));
@@ -210,6 +222,23 @@ void read_tasks(io::TomlFile& file, Study& out) {
 
 }  // namespace
 
+const io::Schema<SlurmSettings>& slurm_table() {
+  static const io::Schema<SlurmSettings> table(
+      "slurm", "what the study asks of a Slurm cluster, for --slurm",
+      {key("shards", &SlurmSettings::shards, "tasks of the job array").at_least(1.0).at_most(1e5).required(),
+       key("time_min", &SlurmSettings::time_s, "that a task may take; not given: what the cluster allows")
+           .at_least(5.0, "A minute before the end it stops, and goes into the queue again")
+           .no_default(),
+       key("memory_mb", &SlurmSettings::memory_mb, "of a task, MiB; not given: what the cluster allows")
+           .at_least(1.0)
+           .no_default(),
+       key("cpus", &SlurmSettings::cpus, "of a task, each for a thread").at_least(1.0),
+       key("restarts", &SlurmSettings::restarts, "of a task that ended before its chunks were done").at_least(0.0),
+       key("partition", &SlurmSettings::partition, "of the cluster; not given: its default").no_default(),
+       key("account", &SlurmSettings::account, "that is charged; not given: the cluster's default").no_default()});
+  return table;
+}
+
 Study read_study(const io::TomlSource& source) {
   io::TomlFile file(source);
   Study out{.file = source.path};
@@ -222,6 +251,10 @@ Study read_study(const io::TomlSource& source) {
     vary_table().read(file, row, out.vary.emplace_back(), row + ".");
   }
   read_tasks(file, out);
+  if (file.has("slurm")) {
+    slurm_table().read(file, "slurm", out.slurm);
+    file.locate([&] { out.slurm.validate(); });
+  }
   out.notes = file.done();
   file.locate([&] { out.validate(); });
   return out;
@@ -230,7 +263,7 @@ Study read_study(const io::TomlSource& source) {
 std::string fingerprint_of(const Study& study) {
   Digest digest;
   digest.text(ROBOMILL_VERSION);
-  add_file(study.file, digest);
+  add_study(study.file, digest);
   add_file(study.base, digest);
   add_files_of_values(study, digest);
   return digest.hex();

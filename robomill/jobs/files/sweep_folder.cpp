@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -39,6 +41,37 @@ SweepPlan read_plan(const std::filesystem::path& path) {
           .chunk_points = count("chunk_points"),
           .keys = texts("keys"),
           .collect = texts("collect")};
+}
+
+bool is_chunk_of(const SweepPlan& plan, std::uint64_t chunk, const Chunk& read) {
+  return read.fingerprint == plan.fingerprint && read.first == plan.first_of(chunk) &&
+         read.points.size() == plan.size_of(chunk) && read.points.front().values.size() == plan.collect.size();
+}
+
+constexpr std::string_view run_lock = ".run.lock", shard_begin = ".shard-", shard_middle = "-of-", shard_end = ".lock";
+
+std::string shard_lock(int shard, int shards) {
+  return fmt::format("{}{}{}{}{}", shard_begin, shard, shard_middle, shards, shard_end);
+}
+
+/// "3/16" of the lock of a shard, "1/1" of that of all; empty: no such file.
+std::string shard_of(std::string_view name) {
+  if (name == run_lock) return "1/1";
+  const std::size_t middle = name.find(shard_middle);
+  if (!name.starts_with(shard_begin) || !name.ends_with(shard_end) || middle == std::string_view::npos) return {};
+  const std::size_t second = middle + shard_middle.size();
+  return fmt::format("{}/{}", name.substr(shard_begin.size(), middle - shard_begin.size()),
+                     name.substr(second, name.size() - shard_end.size() - second));
+}
+
+/// Whoever looks at a lock holds it for a moment.
+std::optional<io::FileLock> patiently(const std::filesystem::path& path, io::FileLock::Kind kind) {
+  std::optional<io::FileLock> out = io::FileLock::try_take(path, kind);
+  for (int i = 0; i < 3 && !out; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    out = io::FileLock::try_take(path, kind);
+  }
+  return out;
 }
 
 }  // namespace
@@ -99,12 +132,39 @@ SweepPlan SweepFolder::plan() const {
   return read_plan(at(plan_name));
 }
 
+void SweepFolder::note(const Locks& locks, std::uint64_t points, double thread_s, int threads) {
+  const io::FileLock& lock = locks.own ? *locks.own : *locks.all;
+  lock.note(fmt::format("{} {} {}\n", points, thread_s, threads));
+}
+
+SweepFolder::Work SweepFolder::work() const {
+  Work out;
+  const io::ReadBack own(folder_);
+  std::error_code error;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder_, error)) {
+    const std::string shard = shard_of(entry.path().filename().string());
+    if (shard.empty()) continue;
+    std::ifstream in = io::open_file(entry.path());
+    double points = 0.0, thread_s = 0.0;
+    int threads = 0;
+    if (in >> points >> thread_s >> threads && points > 0.0 && thread_s > 0.0) {
+      out.points += points;
+      out.thread_s += thread_s;
+    }
+    if (io::FileLock::try_take(entry.path(), io::FileLock::Kind::shared)) continue;
+    out.threads += std::max(threads, 1);
+    out.running.push_back(shard);
+  }
+  std::ranges::sort(out.running);
+  return out;
+}
+
 SweepFolder::Locks SweepFolder::lock(int shard, int shards) const {
   using Kind = io::FileLock::Kind;
   Locks out;
-  out.all = io::FileLock::try_take(at(".run.lock"), shards == 1 ? Kind::exclusive : Kind::shared);
+  out.all = patiently(at(std::string(run_lock)), shards == 1 ? Kind::exclusive : Kind::shared);
   if (out.all && shards > 1) {
-    out.own = io::FileLock::try_take(at(fmt::format(".shard-{}-of-{}.lock", shard, shards)), Kind::exclusive);
+    out.own = patiently(at(shard_lock(shard, shards)), Kind::exclusive);
   }
   if (!out.all || (shards > 1 && !out.own)) {
     throw InvalidInput(folder_.string(), "is being worked on by another run",
@@ -124,12 +184,17 @@ SweepFolder::Found SweepFolder::find(const SweepPlan& plan, std::uint64_t chunk,
   const io::ReadBack own(folder_);
   if (std::filesystem::file_size(path, ignored) == 0) return Found::damaged;
   std::optional<Chunk> read = read_chunk(io::read_file(path));
-  const bool fits = read && read->fingerprint == plan.fingerprint && read->first == plan.first_of(chunk) &&
-                    read->points.size() == plan.size_of(chunk) &&
-                    read->points.front().values.size() == plan.collect.size();
-  if (!fits) return Found::damaged;
+  if (!read || !is_chunk_of(plan, chunk, *read)) return Found::damaged;
   out = *std::move(read);
   return Found::there;
+}
+
+void SweepFolder::save_bytes(const SweepPlan& plan, std::uint64_t chunk, const std::string& bytes) const {
+  const std::optional<Chunk> read = read_chunk(bytes);
+  if (!read || !is_chunk_of(plan, chunk, *read)) {
+    throw InvalidInput(folder_.string(), fmt::format("gets bytes for chunk {} that are not those of it", chunk));
+  }
+  io::write_file(file_of(plan, chunk), bytes);
 }
 
 void SweepFolder::save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const {

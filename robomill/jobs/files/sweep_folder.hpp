@@ -53,6 +53,15 @@ class SweepFolder {
   struct Locks {
     std::optional<io::FileLock> all = {}, own = {};
   };
+  /// Says in the run's lock how far it is: points that it did, and the seconds of one thread that they took.
+  static void note(const Locks& locks, std::uint64_t points, double thread_s, int threads);
+  /// What the notes of all runs say; `threads` and `running` of those whose locks are held now.
+  struct Work {
+    double points = 0.0, thread_s = 0.0;
+    int threads = 0;
+    std::vector<std::string> running = {};  ///< "3/16"; of all chunks "1/1"
+  };
+  [[nodiscard]] Work work() const;
   /// @param shard  from 1. @throws InvalidInput where another run has some of these chunks
   [[nodiscard]] Locks lock(int shard, int shards) const;
 
@@ -64,6 +73,8 @@ class SweepFolder {
   /// @throws InvalidInput if it is there and cannot be read
   [[nodiscard]] Found find(const SweepPlan& plan, std::uint64_t chunk, Chunk& out) const;
   void save(const SweepPlan& plan, std::uint64_t chunk, const std::vector<PointOutcome>& points) const;
+  /// @param bytes  of the chunk's file. @throws InvalidInput if they are not, or cannot be written
+  void save_bytes(const SweepPlan& plan, std::uint64_t chunk, const std::string& bytes) const;
 
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_ / name; }
 

@@ -58,6 +58,20 @@ struct ProbabilityTask {
   double worst_share = 0.05;                          ///< of the quantile that the robust optimum is chosen by
 };
 
+/// What a study asks of a Slurm cluster: a job array, whose i-th of n tasks does the chunks i, i + n, ….
+struct ROBOMILL_API SlurmSettings {
+  int shards = 0;              ///< tasks, at most 100000; 0: the study is for no cluster
+  double time_s = 0.0;         ///< that a task may take [s], >= 300; 0: what the cluster allows
+  int memory_mb = 0;           ///< of a task [MiB]; 0: what the cluster allows
+  int cpus = 1;                ///< of a task, each for a thread
+  int restarts = 3;            ///< of a task that ended before its chunks were done
+  std::string partition = {};  ///< empty: the cluster's default
+  std::string account = {};    ///< the same
+
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
 /// study.toml: a job that is done again and again with other values of some keys.
 ///
 /// What can be collected:
@@ -77,6 +91,7 @@ struct ROBOMILL_API Study {
   std::optional<BoundaryTask> boundary = {};
   std::optional<SensitivityTask> sensitivity = {};
   std::optional<ProbabilityTask> probability = {};
+  SlurmSettings slurm = {};  ///< [slurm]
   std::vector<std::string> notes = {};
 
   /// @throws InvalidInput naming the member
