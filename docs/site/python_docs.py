@@ -228,7 +228,7 @@ class Pages:
     def all(self):
         package = self.trees["__init__"].body
         is_verb = lambda one: isinstance(one, ast.FunctionDef) and isinstance(one.returns, ast.Name) and one.returns.id == "Result"  # noqa: E731
-        verbs = [*filter(is_verb, package), *functions_in(self.source("commands").body)]
+        verbs = [*filter(is_verb, package), *functions_in(self.source("commands").body), *functions_in(self.source("study").body)]
         out = {f"{stage}.md": self.stage(stage) for stage in self.trees if stage != "__init__"}
         out["verbs.md"] = "# Verbs\n\nThe verbs of the command line as functions: files in, a [Result](results.md) out. All options are keywords, in the " \
             "units of their names. What the files hold: [Files](../../../formats.md).\n\n" + block(*self.functions(verbs, "robomill"))

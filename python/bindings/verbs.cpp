@@ -5,7 +5,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/outputs.hpp"
+#include "robomill/jobs/sweep/chunks.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "robomill/page/report.hpp"
 
@@ -78,9 +81,38 @@ py::tuple run(const std::string& name, const std::vector<std::filesystem::path>&
   return py::make_tuple(outcome.json, outcome.summary, outcome.shortfall, page);
 }
 
+/// Chunks of a study, for clusters; their bytes are bytes.
+void bind_studies(py::module_& root) {
+  using jobs::StudyChunks;
+  using jobs::StudyFolder;
+  py::class_<StudyChunks>(root, "_StudyChunks")
+      .def(py::init([](const std::filesystem::path& study) {
+        return without_lock([&] { return std::make_unique<StudyChunks>(study); });
+      }))
+      .def_property_readonly("fingerprint", &StudyChunks::fingerprint)
+      .def("bytes_of", [](const StudyChunks& self, std::uint64_t chunk, std::uint64_t chunk_points) {
+        return py::bytes(without_lock([&] { return self.bytes_of(chunk, chunk_points, Progress::none()); }));
+      });
+  py::class_<StudyFolder>(root, "_StudyFolder")
+      .def(py::init([](const std::filesystem::path& study, const std::filesystem::path& folder) {
+        return without_lock([&] { return std::make_unique<StudyFolder>(study, folder); });
+      }))
+      .def_property_readonly("fingerprint", &StudyFolder::fingerprint)
+      .def_property_readonly("chunk_points", &StudyFolder::chunk_points)
+      .def_property_readonly("todo", &StudyFolder::todo)
+      .def("save",
+           [](StudyFolder& self, std::uint64_t chunk, const py::bytes& bytes) {
+             const std::string content = bytes;
+             without_lock([&] { self.save(chunk, content); });
+           })
+      .def("__enter__", [](py::object self) { return self; })
+      .def("__exit__", [](StudyFolder& self, const py::args&) { self.close(); });
+}
+
 }  // namespace
 
 void bind_verbs(py::module_& root) {
+  bind_studies(root);
   root.def("_verbs", records);
   root.def("_run", run, py::arg("verb"), py::arg("inputs"), py::arg("output"), py::arg("options"),
            py::arg("progress") = py::none());

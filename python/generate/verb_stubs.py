@@ -43,7 +43,8 @@ def main():
     known = kinds()
     modules = sorted(name for name in robomill.__all__ if isinstance(getattr(robomill, name), types.ModuleType))
     head = "".join(f"from . import {name} as {name}\n" for name in modules) + "from .results import Result as Result\n" + \
-        "from .commands import Served as Served, init as init, monitor_input as monitor_input, serve_folder as serve_folder\n"
+        "from .commands import Served as Served, init as init, monitor_input as monitor_input, serve_folder as serve_folder\n" + \
+        "from .study import sweep as sweep\n"
     errors = "".join(f"    {name}: {kind}\n" for name, kind in
                      {"where": "str", "field": "str", "number": "float | None", "value": "str", "unit": "str", "rule": "str", "hint": "str"}.items())
     text = stub.replace("from typing import Any", "from typing import Any, Literal") + head + f"\n__version__: str\n\nclass InvalidInput(ValueError):\n{documented(robomill.InvalidInput)}{errors}\n" + \

@@ -11,6 +11,7 @@ from . import _robomill
 from ._robomill import __version__
 from .commands import Served, init, monitor_input, serve_folder
 from .results import Result
+from .study import sweep
 from .verbs import define as _define
 
 _library = {name: value for name, value in vars(_robomill).items() if not name.startswith("_")}
@@ -20,4 +21,4 @@ for _name, _value in _library.items():
         _sys.modules[f"{__name__}.{_name}"] = _value
 _verbs = _define(globals(), __name__)
 
-__all__ = ["Result", "Served", "__version__", "init", "monitor_input", "serve_folder", *_library, *_verbs]
+__all__ = ["Result", "Served", "__version__", "init", "monitor_input", "serve_folder", "sweep", *_library, *_verbs]

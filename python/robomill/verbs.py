@@ -142,10 +142,12 @@ def _function(name, verbs, module):
 
 
 def define(scope, module):
-    """Puts a function for each verb into a module; @returns their names."""
+    """Puts a function for each verb into a module that has none of its own; @returns their names."""
     groups = {}
     for verb in _robomill._verbs():
         name, flags = _split(verb)
+        if callable(scope.get(name)):
+            continue
         # A stage has that name: "monitor --learn" is monitor_learn.
         groups.setdefault("_".join([name, *flags]) if name in scope else name, []).append(verb)
     for name, verbs in groups.items():
