@@ -241,6 +241,13 @@ Files inputs_of_verb(std::string_view verb) {
              "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\ncollect = \"limit@7000\"\nchunk_points = 2\n"
              "[[vary]]\nkey = \"cut.radial_depth_mm\"\nvalues = [1, 2, 3]\n"}};
   }
+  if (verb == "sweep a boundary") {
+    return {{"lobes.toml", lobes_toml()},
+            {"study.toml",
+             "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\nchunk_points = 2\n"
+             "[boundary]\nvalue = \"abs_mu@7000,0.5\"\nlevel = 0.75\nhalvings = 2\n"
+             "[[vary]]\nkey = \"cut.radial_depth_mm\"\nrange = [0.5, 8]\ncount = 3\n"}};
+  }
   if (verb == "plan") {
     return {{"lobes.toml", lobes_toml()},
             {"modes.toml", modes_toml},
@@ -326,6 +333,7 @@ std::vector<Case> all_cases() {
        "simulate lobes.toml --at 7000,0.5 --seconds 1 -o cut.wav --quiet", goes_on},
       {"calibrate", "toml and report json", "calibrate recordings.toml -o calibrated.toml --report report.json"},
       {"sweep", "folder", "sweep study.toml -o study", "", is_new | hdf5},
+      {"sweep a boundary", "folder", "sweep study.toml -o study", "", is_new | hdf5},
       {"plan", "folder", "plan job.toml -o plan", "", together},
       {"plan", "new folder", "plan job.toml -o plan", "", is_new | together},
       {"plan a program", "folder", "plan job.toml -o plan", "", together},
