@@ -31,7 +31,8 @@ std::string points_text(const SweepResult& result) {
   return out + "\n";
 }
 
-std::string hours(double time_s) {
+std::string time_in_words(double time_s) {
+  if (time_s < 60.0) return fmt::format("{:.2g} s", time_s);
   return time_s < 3600.0 ? fmt::format("{:.3g} min", time_s / 60.0) : fmt::format("{:.3g} h", time_s / 3600.0);
 }
 
@@ -70,9 +71,9 @@ std::string progress_text(const SweepJob& job, const SweepResult& result) {
   }
   if (!result.running.empty()) out += fmt::format("At work here: {}.\n", fmt::join(result.running, ", "));
   if (result.left_s > 0.0) {
-    out += fmt::format("Time left: {}.\n", hours(result.left_s));
+    out += fmt::format("Time left: {}.\n", time_in_words(result.left_s));
   } else if (result.left_thread_s > 0.0) {
-    out += fmt::format("Time left: {} of one thread; none is at work.\n", hours(result.left_thread_s));
+    out += fmt::format("Time left: {} of one thread; none is at work.\n", time_in_words(result.left_thread_s));
   }
   return out;
 }
@@ -96,8 +97,8 @@ std::string summary_of(const SweepJob& job, const SweepResult& result) {
                       result.study.boundary ? "At most " : "", result.points, result.point_s,
                       result.point_s * static_cast<double>(result.points) / 3600.0);
   } else {
-    out = fmt::format("{} points in {} chunks of {}: {} chunks{} are done, {} by this run.\n", result.points,
-                      result.chunks, result.chunk_points, result.done_chunks,
+    out = fmt::format("{} points in {} {} of {}: {} done{}, {} by this run.\n", result.points, result.chunks,
+                      result.chunks == 1 ? "chunk" : "chunks", result.chunk_points, result.done_chunks,
                       job.shards > 1 ? fmt::format(" of shard {}/{}", job.shard, job.shards) : "", result.ran_chunks) +
           points_text(result);
     if (result.point_s > 0.0) out += fmt::format("A point takes {:.3g} s of one thread.\n", result.point_s);
