@@ -11,8 +11,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/io/json.hpp"
 #include "robomill/jobs/files/slurm_jobs.hpp"
 #include "robomill/jobs/files/statistics_json.hpp"
+#include "robomill/jobs/files/study_points_json.hpp"
 #include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/files/sweep_tables.hpp"
@@ -106,7 +108,10 @@ class Sweep {
     look_at_chunks();
     if (job_.status) look_at_runs();
     if (!job_.status) write_tables();
-    if (!job_.status && result_.complete() && job_.shards == 1) write_findings();
+    if (!job_.status && result_.complete() && job_.shards == 1) {
+      write_findings();
+      keep_points();
+    }
     return std::move(result_);
   }
 
@@ -334,6 +339,13 @@ class Sweep {
     write_statistics(path, found);
     result_.written.push_back(path.string());
     result_.findings = lines_of(found);
+    result_.statistics_json = io::dump(statistics_table().write(found));
+  }
+
+  void keep_points() {
+    ShownPoints shown = shown_points_of(done_study(), boundary_ ? &*boundary_ : nullptr);
+    shown.rejected = result_.rejected;
+    result_.study_points_json = io::dump(study_points_table().write(shown));
   }
 
   const SweepJob& job_;

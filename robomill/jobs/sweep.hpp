@@ -52,6 +52,9 @@ struct SweepResult {
   double point_s = 0.0;                                ///< that a point took here, of one thread [s]; 0: none was done
   /// What its boundary, its indices and its probabilities are, a line each; empty: it asks for none, or is not done.
   std::vector<std::string> findings = {};
+  std::string statistics_json = {};  ///< the same as a document, "statistics/1"
+  /// Points to look at, "study_points/1": all of them, or an even choice; empty: they are not all done.
+  std::string study_points_json = {};
   double left_s =
       0.0;  ///< of the points that are not done, by the threads at work [s]; 0: nothing is left, or none is at work
   double left_thread_s = 0.0;             ///< … of one thread [s]; 0: nothing is left, or no point was done

@@ -40,6 +40,8 @@ struct Report {
   std::string sweep = {};                ///< lobes.json of a sweep; empty: none
   std::string comparison = {};           ///< lobes.json of methods compared; empty: none
   std::string postures = {};             ///< postures.json; empty: none
+  std::string statistics = {};           ///< statistics.json of a study; empty: none
+  std::string study_points = {};         ///< points of a study, recorded for the page alone; empty: none
   std::string explanation = {};          ///< explain.json; empty: none
   std::string simulation = {};           ///< simulation.json; empty: none
   std::string vibration = {};            ///< its columns, recorded for the page alone; empty: none

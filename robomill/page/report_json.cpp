@@ -291,6 +291,8 @@ Json page_data(const Report& report) {
                                        {"sweep", &Report::sweep},
                                        {"comparison", &Report::comparison},
                                        {"postures", &Report::postures},
+                                       {"statistics", &Report::statistics},
+                                       {"study_points", &Report::study_points},
                                        {"explanation", &Report::explanation},
                                        {"simulation", &Report::simulation},
                                        {"vibration", &Report::vibration},

@@ -25,6 +25,7 @@
 #include "testing/page/report_sample.hpp"
 #include "testing/page/smooth_sample.hpp"
 #include "testing/page/structure_sample.hpp"
+#include "testing/page/study_sample.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::page {
@@ -287,6 +288,8 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.joint = sample_joint(evil);
   report.tools = sample_tools(evil);
   report.comparison = sample_comparison(evil);
+  report.statistics = sample_statistics(evil);
+  report.study_points = sample_study_points(evil);
   report.coefficients = sample_coefficients(evil);
   report.stiffness = sample_stiffness(evil);
   report.assumed = sample_assumed(evil);

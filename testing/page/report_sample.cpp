@@ -9,6 +9,7 @@
 #include "testing/page/plan_sample.hpp"
 #include "testing/page/smooth_sample.hpp"
 #include "testing/page/structure_sample.hpp"
+#include "testing/page/study_sample.hpp"
 
 namespace robomill::page {
 
@@ -36,6 +37,8 @@ Report sample_report() {
   report.sweep = sample_sweep();
   report.comparison = sample_comparison();
   report.postures = sample_postures();
+  report.statistics = sample_statistics();
+  report.study_points = sample_study_points();
   report.explanation = sample_explanation();
   report.simulation = sample_simulation();
   report.vibration = sample_vibration();

@@ -12,6 +12,7 @@
 #include "testing/page/report_sample.hpp"
 #include "testing/page/smooth_sample.hpp"
 #include "testing/page/structure_sample.hpp"
+#include "testing/page/study_sample.hpp"
 
 /// report_sample OUT.html [sample|hostile|long]: the sample page for the browser test; hostile puts markup into every
 /// text it can; long has a program of 40,000 blocks and nothing else.
@@ -33,6 +34,8 @@ int main(int argc, char** argv) {
     report.blocks = robomill::page::sample_blocks(evil);
     report.smooth = robomill::page::sample_smooth(evil);
     report.cell = robomill::page::sample_cell(evil);
+    report.statistics = robomill::page::sample_statistics(evil);
+    report.study_points = robomill::page::sample_study_points(evil);
     report.monitor = robomill::page::sample_monitor(evil);
     report.calibration = robomill::page::sample_calibration(evil);
     report.joint = robomill::page::sample_joint(evil);

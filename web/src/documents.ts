@@ -26,6 +26,8 @@ export const members = {
   sweep: 'sweep',
   comparison: 'comparison',
   postures: 'postures',
+  statistics: 'statistics', // of a study
+  study_points: 'study_points',
   explanation: 'explain',
   simulation: 'simulation',
   vibration: 'vibration', // of the simulated cut
@@ -66,6 +68,18 @@ export type OtherSpeed = Decision['alternatives'][number];
 export type Stretch = Decision['stretches'][number];
 /** Stability margin over the place along the path and the turn γ: a row a γ; null: the robot cannot stand there. */
 export type GammaMap = NonNullable<Decision['gamma_map']>;
+
+// A study
+export type StudyPoints = Documents['study_points'];
+/** A key or a value at each of these points. */
+export type StudyColumn = StudyPoints['keys'][number];
+type Statistics = Documents['statistics'];
+export type BoundaryResult = NonNullable<Statistics['boundary']>;
+export type SensitivityRow = NonNullable<Statistics['sensitivity']>[number];
+export type ProbabilityResult = NonNullable<Statistics['probability']>;
+export type ProbabilityRow = ProbabilityResult['rows'][number];
+/** Keys and what they are set to, as TOML writes it. */
+export type Settled = ProbabilityRow['at'];
 
 // The structure
 export type FrfDocument = Shown['frf'];

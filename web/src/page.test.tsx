@@ -40,6 +40,8 @@ function empty(): Report {
     sweep: null,
     comparison: null,
     postures: null,
+    statistics: null,
+    study_points: null,
     explanation: null,
     simulation: null,
     vibration: null,
@@ -72,7 +74,7 @@ it('shows every part of a report', () => {
   }
   for (const id of [
     'lobes', 'feed', 'program', 'forces', 'smooth', 'cell', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration',
-    'peaks', 'simulation', 'sweep', 'comparison', 'postures', 'coefficients', 'stiffness', 'tools', 'joint',
+    'peaks', 'simulation', 'sweep', 'comparison', 'postures', 'probability', 'sensitivity', 'boundary', 'results', 'coefficients', 'stiffness', 'tools', 'joint',
   ]) {
     expect(html).toContain(`<section id="${id}"`);
     expect(html).toContain(`href="#${id}"`);
@@ -453,6 +455,27 @@ it('shows tools side by side, and why one has no result', () => {
   for (const tool of report.tools!.tools) Object.assign(tool, { peak_um_per_n: null, peak_hz: null, lowest_limit_mm: null, recommended: null, modes: [], notes: [] });
   report = { ...empty(), tools: report.tools };
   for (const part of ['data-plot', 'Modes of every tool', 'Removal (mm³/s)']) expect(page()).not.toContain(part);
+});
+
+it('shows of a study what its points say, and only that', () => {
+  const { statistics, study_points } = report;
+  report = { ...empty(), statistics, study_points };
+  for (const part of [
+    'Robust optimum: limit@10000 at tool.teeth = 2',
+    '<li>limit@12000 at tool.teeth = 4, cut.radial_depth_mm = 6: 2 of 66 samples</li>',
+    'limit@12000 at tool.teeth = 3: does not vary: no key matters.',
+    '2371 evaluations. The full grid of the same steps has 35\u202f937, 15.2 times as many.',
+    '400 of 6200 points of the boundary, evenly chosen.',
+    '60 of 20000 points, evenly chosen. 3 of all 20000 points were rejected',
+  ]) {
+    expect(page()).toContain(part);
+  }
+  report = { ...empty(), study_points };
+  expect(page()).toContain('id="results"');
+  for (const id of ['probability', 'sensitivity', 'boundary']) expect(page()).not.toContain(`id="${id}"`);
+  report = { ...empty(), statistics: { document: 'statistics/1', boundary: { ...statistics!.boundary!, points: 0, complete: false } } };
+  for (const part of ['The most points were reached', 'No point of the coarse grid']) expect(page()).toContain(part);
+  for (const part of ['data-plot', 'id="results"']) expect(page()).not.toContain(part);
 });
 
 it('has no column of grades or shares where a verb knows none', () => {

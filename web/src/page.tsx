@@ -18,6 +18,7 @@ import { SimulationSection } from './sections/simulation';
 import { SmoothSection } from './sections/smooth';
 import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
 import { PosturesSection } from './sections/postures';
+import { BoundarySection, ProbabilitySection, ResultsSection, SensitivitySection } from './sections/study';
 import { ComparisonSection, SweepSection } from './sections/sweep';
 import { ToolsSection } from './sections/tools';
 import { Selection } from './selection';
@@ -31,7 +32,8 @@ interface Entry {
 
 function entries(report: Report): Entry[] {
   const { plan, monitor, calibration, forces, blocks, smooth, cell, assembly, recordings, files } = report;
-  const { explanation, simulation, sweep, comparison, postures, tools, joint, coefficients, stiffness } = report;
+  const { explanation, simulation, sweep, comparison, postures, tools, joint, coefficients, stiffness, study_points: points } = report;
+  const { boundary, sensitivity = [], probability } = report.statistics ?? {};
   const { cuts = [], pairs = [], feed_directions: feed = [] } = plan ?? {};
   const notes = [...(plan?.notes ?? []), ...report.notes];
   const lobes = report.lobes && lobesOf(report.lobes);
@@ -47,6 +49,10 @@ function entries(report: Report): Entry[] {
     { id: 'sweep', name: 'Sweep', content: sweep && <SweepSection sweep={sweep} /> },
     { id: 'comparison', name: 'Methods', content: comparison && <ComparisonSection comparison={comparison} /> },
     { id: 'postures', name: 'Postures', content: postures && <PosturesSection document={postures} /> },
+    { id: 'probability', name: 'Probability', content: probability && <ProbabilitySection result={probability} points={points} /> },
+    { id: 'sensitivity', name: 'Sensitivity', content: sensitivity.length > 0 && <SensitivitySection rows={sensitivity} points={points} /> },
+    { id: 'boundary', name: 'Boundary', content: boundary && <BoundarySection result={boundary} points={points} /> },
+    { id: 'results', name: 'Results', content: points && points.values.length > 0 && points.keys.length > 0 && <ResultsSection points={points} /> },
     { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
     { id: 'program', name: 'Program', content: blocks && <ProgramSection document={blocks} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },

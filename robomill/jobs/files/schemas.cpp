@@ -27,6 +27,7 @@
 #include "robomill/jobs/files/signal_json.hpp"
 #include "robomill/jobs/files/slurm_jobs.hpp"
 #include "robomill/jobs/files/statistics_json.hpp"
+#include "robomill/jobs/files/study_points_json.hpp"
 #include "robomill/jobs/files/study_schema.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
@@ -229,6 +230,7 @@ const std::vector<Entry>& documents() {
                                    &live::recorded_run_table().info(),
                                    &sweep_plan_table().info(),
                                    &statistics_table().info(),
+                                   &study_points_table().info(),
                                    &slurm_jobs_table().info()})
       out.push_back({table->name + ".json", *table});
     return out;

@@ -21,16 +21,20 @@
 namespace robomill::jobs {
 namespace {
 
+/// @throws InvalidInput if it is not there
+void require_chunk(const DoneStudy& study, const SweepPlan& plan, std::uint64_t i, Chunk& out) {
+  if (study.folder.find(plan, i, out) == SweepFolder::Found::there) return;
+  throw InvalidInput(study.folder.at("chunks").string(),
+                     fmt::format("chunk {} is missing or damaged", plan.first_chunk + i), "Run the study again");
+}
+
 /// @param take  of each point, in their order: what the keys are set to, what became of it
 void for_each_point(const DoneStudy& study,
                     const std::function<void(const std::vector<std::string>&, const PointOutcome&)>& take) {
   Chunk chunk;
   for (const SweepPlan& plan : study.plans) {
     for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
-      if (study.folder.find(plan, i, chunk) != SweepFolder::Found::there) {
-        throw InvalidInput(study.folder.at("chunks").string(),
-                           fmt::format("chunk {} is missing or damaged", plan.first_chunk + i), "Run the study again");
-      }
+      require_chunk(study, plan, i, chunk);
       for (std::size_t k = 0; k < chunk.points.size(); ++k) {
         take(study.points.values(plan.first_of(i) + k), chunk.points[k]);
       }
@@ -127,6 +131,26 @@ bool is_csv(const std::filesystem::path& path) {
   throw InvalidInput(path.string(), "must end in .h5, .hdf5 or .csv");
 }
 
+/// Texts as TOML writes them, as numbers where all are.
+void set_numbers(StudyColumn& column) {
+  const auto is_number = [](const std::string& text) { return io::parse_number(text).has_value(); };
+  if (std::ranges::all_of(column.texts, is_number)) {
+    for (const std::string& text : column.texts) column.numbers.push_back(*io::parse_number(text));
+    column.texts.clear();
+  }
+  for (std::string& text : column.texts) text = io::toml_unquoted(text);
+}
+
+std::vector<StudyColumn> columns_named(const std::vector<std::string>& names, std::string (*unit)(const std::string&)) {
+  std::vector<StudyColumn> out;
+  for (const std::string& name : names) out.push_back({.name = name, .unit = unit(name)});
+  return out;
+}
+
+std::string unit_of_varied(const std::string& name) {
+  return io::unit_of_key(name);
+}
+
 }  // namespace
 
 void write_sweep_table(const std::filesystem::path& path, const DoneStudy& study) {
@@ -142,6 +166,43 @@ std::vector<std::vector<double>> columns_of(const DoneStudy& study) {
   for_each_point(study, [&](const std::vector<std::string>&, const PointOutcome& point) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i].push_back(point.values[i]);
   });
+  return out;
+}
+
+ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary) {
+  const SweepPlan& first = study.plans.front();
+  ShownPoints out{.points = study.points.size(),
+                  .keys = columns_named(first.keys, &unit_of_varied),
+                  .values = columns_named(first.collect, &unit_of_collected)};
+  const std::vector<std::uint64_t> chosen = even_choice(out.points);
+  auto next = chosen.begin();
+  Chunk chunk;
+  for (const SweepPlan& plan : study.plans) {
+    for (std::uint64_t i = 0; i < plan.chunks(); ++i) {
+      const std::uint64_t begin = plan.first_of(i), end = begin + plan.size_of(i);
+      if (next == chosen.end() || *next >= end) continue;
+      require_chunk(study, plan, i, chunk);
+      for (; next != chosen.end() && *next < end; ++next) {
+        const std::vector<std::string> set = study.points.values(*next);
+        for (std::size_t k = 0; k < set.size(); ++k) out.keys[k].texts.push_back(set[k]);
+        const std::vector<double>& values = chunk.points[*next - begin].values;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+          out.values[k].numbers.push_back(values[k]);
+          out.values[k].infinite += std::isinf(values[k]) ? 1 : 0;
+        }
+      }
+    }
+  }
+  std::ranges::for_each(out.keys, set_numbers);
+  if (boundary == nullptr) return out;
+  out.boundary_points = static_cast<std::uint64_t>(boundary->points.rows());
+  out.boundary_keys = columns_named(first.keys, &unit_of_varied);
+  for (const std::uint64_t i : even_choice(out.boundary_points)) {
+    for (std::size_t k = 0; k < out.boundary_keys.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
+      out.boundary_keys[k].numbers.push_back(boundary->points(row, column));
+    }
+  }
   return out;
 }
 

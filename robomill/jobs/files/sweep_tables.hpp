@@ -5,6 +5,7 @@
 
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/sweep/boundary.hpp"
+#include "robomill/jobs/sweep/shown_points.hpp"
 #include "robomill/jobs/sweep/study.hpp"
 
 namespace robomill::jobs {
@@ -27,5 +28,9 @@ void write_boundary_table(const std::filesystem::path& path, const SweepPlan& pl
 /// Of each value that is collected one number a point; NaN where the point has none.
 /// @throws InvalidInput if a chunk is missing
 [[nodiscard]] std::vector<std::vector<double>> columns_of(const DoneStudy& study);
+
+/// Points for a page; of `boundary` too, where there is one.
+/// @throws InvalidInput if a chunk is missing
+[[nodiscard]] ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary);
 
 }  // namespace robomill::jobs

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "robomill/base/printable.hpp"
+#include "robomill/jobs/outputs.hpp"
 #include "robomill/jobs/sweep.hpp"
 #include "robomill/jobs/verbs/records.hpp"
 
@@ -120,6 +121,17 @@ std::string summary_of(const SweepJob& job, const SweepResult& result) {
   return out;
 }
 
+page::Report page_of(const SweepResult& result, const std::string& summary) {
+  page::Report page;
+  page.title = "Study";
+  page.created = created_now();
+  page.notes = result.study.notes;
+  page.summary = summary;
+  page.statistics = result.statistics_json;
+  page.study_points = result.study_points_json;
+  return page;
+}
+
 Outcome run_sweep_verb(const VerbJob& job, Progress& progress) {
   SweepJob wanted = {.study = job.input(),
                      .folder = job.output,
@@ -134,13 +146,7 @@ Outcome run_sweep_verb(const VerbJob& job, Progress& progress) {
   const SweepResult result = run_sweep(wanted, progress);
   Outcome outcome = {.summary = summary_of(wanted, result)};
   if (result.done == 0 && result.rejected > 0) outcome.shortfall = "no point could be done";
-  outcome.page = [notes = result.study.notes, summary = outcome.summary] {
-    page::Report page;
-    page.title = "Study";
-    page.notes = notes;
-    page.summary = summary;
-    return page;
-  };
+  outcome.page = [result, summary = outcome.summary] { return page_of(result, summary); };
   for (const std::string& note : result.study.notes) outcome.summary += printable(note) + "\n";
   return outcome;
 }
