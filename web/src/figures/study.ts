@@ -32,7 +32,7 @@ export function probabilityFigure(map: ProbabilityMap, theme: Theme, narrow: boo
     return `${plain(rowName(row))}<br>${estimateText(row.probability)}<br>${row.holding} of ${row.points} samples${left}`;
   };
   const cells = down <= most_texts && values.length <= (narrow ? 5 : 12);
-  const height = Math.min(1200, Math.max(down * (cells ? 40 : 14), 80)) + 16 + room_below;
+  const height = Math.min(1200, Math.max(down * (cells ? 40 : 14), 80)) + 100;
   const z = rows.map((row) => row.map((cell) => cell?.probability.value ?? null));
   const outline = optimum && { type: 'rect', x0: optimum[0] - 0.5, x1: optimum[0] + 0.5, y0: optimum[1] - 0.5, y1: optimum[1] + 0.5, line: { color: theme.overlay, width: 4 } };
   return {
@@ -50,11 +50,12 @@ export function probabilityFigure(map: ProbabilityMap, theme: Theme, narrow: boo
         xgap: 2,
         ygap: 2,
         colorscale: diverging(theme.chatter, theme, theme.stable),
-        colorbar: scaleBelow('Probability', height, { tickformat: '.0%' }),
+        showscale: !cells, // the texts say it
+        colorbar: { title: { text: 'Probability', side: 'right' }, thickness: 12, outlinewidth: 0, tickformat: '.0%' },
       },
     ],
     layout: layout(theme, height, {
-      margin: { l: 56, r: 36, t: 16, b: room_below },
+      margin: { l: 56, r: 36, t: 16, b: 48 },
       xaxis: axis(theme, 'Collected value', { ...categories(values, 24), range: [-0.5, values.length - 0.5] }),
       yaxis: axis(theme, shortened(shortNames(keys).join(', '), 40), { ...categories(combinations, 24), range: [down - 0.5, -0.5] }),
       shapes: outline ? [outline] : [],
