@@ -51,7 +51,8 @@ void add_noise(modal::FrfSet& set, double share, std::uint64_t seed) {
   for (modal::Frf& frf : set.frfs) {
     for (std::complex<double>& h : frf.receptance) {
       const double sigma = share * std::abs(h) / std::numbers::sqrt2;
-      h += sigma * std::complex<double>(random.normal(), random.normal());
+      const double im = random.normal();  // drawn first, whatever the compiler does with arguments
+      h += sigma * std::complex<double>(random.normal(), im);
     }
   }
 }

@@ -19,6 +19,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/system/output_places.hpp"
 #include "robomill/io/table.hpp"
+#include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/sweep/chunks.hpp"
@@ -414,6 +415,26 @@ values = [9000]
   ASSERT_EQ(result.reasons.size(), 1U);
   EXPECT_NE(result.reasons[0].find("lobes.toml: lobes does not read spindle.max_speed_rpm in it"), std::string::npos)
       << result.reasons[0];
+}
+
+TEST_F(Sweeps, SetKeysToNumbersTextsAndBooleans) {
+  const auto values = [&](const std::string& text) {
+    folder_.file("study.toml",
+                 "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\ncollect = \"limit@8000\"\n[[vary]]\nkey = \"a\"\n" +
+                     ("values = " + text + "\n"));
+    std::string out;
+    for (const std::vector<std::string>& row : read_study(folder_.at("study.toml")).vary[0].values) out += row[0] + ";";
+    return out;
+  };
+  EXPECT_EQ(values("[1, 2.5, 1e-7]"), "1;2.5;1e-07;");
+  EXPECT_EQ(values("[true, false]"), "true;false;");
+  EXPECT_EQ(values("[\"up\", \"a \\\"b\\\"\"]"), "\"up\";\"a \\\"b\\\"\";");
+  EXPECT_EQ(values("7"), "7;");
+  const auto says = [&](const std::string& text) { return rejection([&] { static_cast<void>(values(text)); }); };
+  for (const char* text : {"[{ a = 1 }]", "[[1, 2]]"}) {
+    EXPECT_NE(says(text).find("vary[0].values must be numbers, texts, true or false"), std::string::npos) << says(text);
+  }
+  EXPECT_NE(says("[]").find("must not be empty"), std::string::npos) << says("[]");
 }
 
 TEST_F(Sweeps, TakeAnyNumberOfADocument) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -29,23 +30,36 @@ using io::key;
 constexpr std::size_t longest_file_name = 1024;
 
 /// A cell of a table, as TOML writes it.
-std::string literal_of(std::string_view cell) {
+std::string literal_of_cell(std::string_view cell) {
   return io::parse_cell(cell) ? fmt::format("{}", *io::parse_cell(cell)) : io::toml_quoted(cell);
+}
+
+/// A value as TOML writes it.
+std::string literal_of(const io::Json& value) {
+  if (value.is_number()) return fmt::format("{}", value.get<double>());
+  if (value.is_string()) return io::toml_quoted(value.get<std::string>());
+  return value.dump();
+}
+
+/// What a document has at a key where that is a plain value, or a list of them.
+std::optional<io::Json> plain_value(const io::TomlFile& file, const std::string& path) {
+  for (const io::TomlText& text : file.texts()) {
+    for (io::TomlValue& value : io::toml_values(text.content, text.path.string())) {
+      if (value.key == path) return std::move(value.value);
+    }
+  }
+  return std::nullopt;
 }
 
 void read_values(io::TomlFile& file, const std::string& path, Variation& out) {
   if (!file.has(path)) return;
-  std::vector<std::string> texts;
-  if (file.is_number(path) || file.is_number(path + "[0]")) {
-    std::vector<double> numbers;
-    file.numbers(path, {}, 1.0, numbers);
-    for (const double number : numbers) texts.push_back(fmt::format("{}", number));
-  } else {
-    file.texts(path, texts);
-    for (std::string& text : texts) text = io::toml_quoted(text);
-  }
-  if (texts.empty()) throw file.reject(path, "must not be empty");
-  for (std::string& text : texts) out.values.push_back({std::move(text)});
+  file.skip(path);
+  std::optional<io::Json> values = plain_value(file, path);
+  if (values && !values->is_array()) values = io::Json::array({*values});
+  if (!values || std::ranges::any_of(*values, &io::Json::is_array))
+    throw file.reject(path, "must be numbers, texts, true or false");
+  if (values->empty()) throw file.reject(path, "must not be empty");
+  for (const io::Json& value : *values) out.values.push_back({literal_of(value)});
 }
 
 void read_table(io::TomlFile& file, const std::string& path, Variation& out) {
@@ -56,7 +70,7 @@ void read_table(io::TomlFile& file, const std::string& path, Variation& out) {
   out.keys = table.names;
   for (const io::TextTable::Row& row : table.rows) {
     std::vector<std::string>& cells = out.values.emplace_back();
-    for (const std::string& field : row.fields) cells.push_back(literal_of(field));
+    for (const std::string& field : row.fields) cells.push_back(literal_of_cell(field));
   }
 }
 
@@ -149,8 +163,9 @@ const io::Schema<Variation>& vary_table() {
              std::string text;
              if (file.text(path, text)) out.keys = {std::move(text)};
            }),
-       declared<Variation>("values", Holds::number, "numbers or texts, one after the other", 1)
+       declared<Variation>("values", Holds::number, "numbers, texts, true or false, one after the other", 1)
            .or_also(Holds::text)
+           .or_also(Holds::boolean)
            .or_one()
            .read_by(read_values),
        key("range", &Variation::range, "or from, to, in the key's unit").no_default().entries(2),
