@@ -27,8 +27,7 @@ Sign sign_of(double value) {
 
 void sort_once(std::vector<std::uint64_t>& numbers) {
   std::ranges::sort(numbers);
-  const auto again = std::ranges::unique(numbers);
-  numbers.erase(again.begin(), again.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 /// Numbers are well spread already, but for those of corners, which differ by strides.
