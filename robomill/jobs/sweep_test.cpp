@@ -423,7 +423,8 @@ TEST_F(Sweeps, SetKeysToNumbersTextsAndBooleans) {
                  "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\ncollect = \"limit@8000\"\n[[vary]]\nkey = \"a\"\n" +
                      ("values = " + text + "\n"));
     std::string out;
-    for (const std::vector<std::string>& row : read_study(folder_.at("study.toml")).vary[0].values) out += row[0] + ";";
+    const Study study = read_study(folder_.at("study.toml"));
+    for (const std::vector<std::string>& row : study.vary[0].values) out += row[0] + ";";
     return out;
   };
   EXPECT_EQ(values("[1, 2.5, 1e-7]"), "1;2.5;1e-07;");
@@ -432,7 +433,8 @@ TEST_F(Sweeps, SetKeysToNumbersTextsAndBooleans) {
   EXPECT_EQ(values("7"), "7;");
   const auto says = [&](const std::string& text) { return rejection([&] { static_cast<void>(values(text)); }); };
   for (const char* text : {"[{ a = 1 }]", "[[1, 2]]"}) {
-    EXPECT_NE(says(text).find("vary[0].values must be numbers, texts, true or false"), std::string::npos) << says(text);
+    EXPECT_NE(says(text).find("vary[1].values: must be numbers, texts, true or false"), std::string::npos)
+        << says(text);
   }
   EXPECT_NE(says("[]").find("must not be empty"), std::string::npos) << says("[]");
 }
