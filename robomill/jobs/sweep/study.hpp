@@ -75,10 +75,10 @@ struct ROBOMILL_API SlurmSettings {
 /// study.toml: a job that is done again and again with other values of some keys.
 ///
 /// What can be collected:
-///   limit@RPM              lobes: lowest unstable depth at a speed [mm]; infinity: none in the document's range
-///   chatter_frequency@RPM  lobes: at that limit [Hz]; NaN where there is none
-///   abs_mu@RPM,MM          lobes: spectral radius at a speed and a depth
-///   a.b.2                  any job: a number of its JSON document, by keys and places in lists, counted from 0
+///   `limit@RPM`              lobes: lowest unstable depth at a speed [mm]; infinity: none in the document's range
+///   `chatter_frequency@RPM`  lobes: at that limit [Hz]; NaN where there is none
+///   `abs_mu@RPM,MM`          lobes: spectral radius at a speed and a depth
+///   `a.b.2`                  any job: a number of its JSON document, by keys and places in lists, counted from 0
 struct ROBOMILL_API Study {
   std::filesystem::path file = {};        ///< study.toml
   std::string job = {};                   ///< the verb: "lobes"
