@@ -1,5 +1,6 @@
 """Studies: by the verb, and as tasks of a Dask cluster; the bytes are the same."""
 import os
+import pathlib
 import random
 import signal
 import subprocess
@@ -10,24 +11,7 @@ import robomill
 
 PROGRAM = os.environ["ROBOMILL"]
 TABLES = ["results.csv", "results.h5"]
-CUT = """
-[tool]
-teeth = 2
-diameter_mm = 10
-[cut]
-radial_depth_mm = 5
-direction = "down"
-feed_per_tooth_mm = 0.1
-[coefficients]
-tangential_n_per_mm2 = 600
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 600, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-y = [{ frequency_hz = 650, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-[lobes]
-spindle_speed_rpm = [4000, 16000]
-axial_depth_mm = [0.05, 20]
-"""
+CUT = (pathlib.Path(__file__).resolve().parents[2] / "testing/jobs/study/lobes.toml").read_text()
 STUDY = """
 [study]
 job = "lobes"

@@ -23,6 +23,7 @@
 #include "robomill/jobs/files/sweep_folder.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/sweep/chunks.hpp"
+#include "testing/jobs/study_cut.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -30,25 +31,7 @@ namespace sweep_test {
 
 using test::Folder;
 using test::rejection;
-
-constexpr const char* cut = R"(
-[tool]
-teeth = 2
-diameter_mm = 10
-[cut]
-radial_depth_mm = 5
-direction = "down"
-feed_per_tooth_mm = 0.1
-[coefficients]
-tangential_n_per_mm2 = 600
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 600, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-y = [{ frequency_hz = 650, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-[lobes]
-spindle_speed_rpm = [4000, 16000]
-axial_depth_mm = [0.05, 20]
-)";
+using test_support::study_cut;
 
 constexpr const char* study = R"(
 [study]
@@ -68,7 +51,7 @@ values = [2, 3, 4]
 class Sweeps : public ::testing::Test {
  protected:
   Sweeps() {
-    folder_.file("lobes.toml", cut);
+    folder_.file("lobes.toml", study_cut());
     folder_.file("study.toml", study);
   }
   SweepResult run(const std::string& into, int shard = 1, int shards = 1) {
@@ -316,9 +299,9 @@ TEST_F(Sweeps, LeaveNoHalfFileOnAFullDisk) {
 TEST_F(Sweeps, OfAnotherStudyAreRejected) {
   run("out");
   const auto says = [&] { return rejection([&] { run("out"); }); };
-  folder_.file("lobes.toml", std::string(cut) + "# the same cut\n");
+  folder_.file("lobes.toml", study_cut() + "# the same cut\n");
   EXPECT_NE(says().find("is of another study"), std::string::npos);
-  folder_.file("lobes.toml", cut);
+  folder_.file("lobes.toml", study_cut());
   run("out");
   const std::string plan = bytes("out/study.json");
   folder_.file("out/study.json", std::string(plan).replace(plan.find("\"points\": 9"), 11, "\"points\": 8"));
@@ -333,7 +316,7 @@ TEST_F(Sweeps, DropPointsOfFilesThatChangeMeanwhile) {
   Progress changes(
       [&](const std::string&, double done) {
         if (changed || done < 0.5) return;
-        folder_.file("lobes.toml", std::string(cut) + "# the same cut\n");
+        folder_.file("lobes.toml", study_cut() + "# the same cut\n");
         changed = true;
       },
       nullptr);
@@ -341,13 +324,13 @@ TEST_F(Sweeps, DropPointsOfFilesThatChangeMeanwhile) {
               static_cast<void>(run_sweep({.study = folder_.at("study.toml"), .folder = folder_.at("out")}, changes));
             }).find("or a file that it names has changed while the study ran"),
             std::string::npos);
-  folder_.file("lobes.toml", cut);
+  folder_.file("lobes.toml", study_cut());
   EXPECT_EQ(run("out").ran_chunks, 2U);
 }
 
 // Files that a document or the value of a key names count with what is in them.
 TEST_F(Sweeps, OfOtherFilesAreRejected) {
-  const std::string text = cut;
+  const std::string text = study_cut();
   folder_.file("lobes.toml", text.substr(0, text.find("[dynamics]")) + "[dynamics]\nmodes = \"a.toml\"\n" +
                                  text.substr(text.find("[lobes]")));
   const std::string mode = "left = {{ x = [0.01, 0.0], y = [0.0, 0.0] }}\nright = {{ x = [0.0, {}], y = [0.0, {}] }}\n";

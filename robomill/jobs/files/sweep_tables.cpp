@@ -141,14 +141,11 @@ void set_numbers(StudyColumn& column) {
   for (std::string& text : column.texts) text = io::toml_unquoted(text);
 }
 
-std::vector<StudyColumn> columns_named(const std::vector<std::string>& names, std::string (*unit)(const std::string&)) {
+template <class Unit>
+std::vector<StudyColumn> columns_named(const std::vector<std::string>& names, const Unit& unit) {
   std::vector<StudyColumn> out;
   for (const std::string& name : names) out.push_back({.name = name, .unit = unit(name)});
   return out;
-}
-
-std::string unit_of_varied(const std::string& name) {
-  return io::unit_of_key(name);
 }
 
 }  // namespace
@@ -172,8 +169,8 @@ std::vector<std::vector<double>> columns_of(const DoneStudy& study) {
 ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary) {
   const SweepPlan& first = study.plans.front();
   ShownPoints out{.points = study.points.size(),
-                  .keys = columns_named(first.keys, &unit_of_varied),
-                  .values = columns_named(first.collect, &unit_of_collected)};
+                  .keys = columns_named(first.keys, io::unit_of_key),
+                  .values = columns_named(first.collect, unit_of_collected)};
   const std::vector<std::uint64_t> chosen = even_choice(out.points);
   auto next = chosen.begin();
   Chunk chunk;
@@ -196,7 +193,7 @@ ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary) {
   std::ranges::for_each(out.keys, set_numbers);
   if (boundary == nullptr) return out;
   out.boundary_points = static_cast<std::uint64_t>(boundary->points.rows());
-  out.boundary_keys = columns_named(first.keys, &unit_of_varied);
+  out.boundary_keys = columns_named(first.keys, io::unit_of_key);
   for (const std::uint64_t i : even_choice(out.boundary_points)) {
     for (std::size_t k = 0; k < out.boundary_keys.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);

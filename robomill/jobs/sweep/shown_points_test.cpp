@@ -8,6 +8,7 @@
 
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/verbs.hpp"
+#include "testing/jobs/study_cut.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -42,24 +43,9 @@ class StudyPages : public ::testing::Test {
  protected:
   /// The data of the page of a study over a radial depth, a direction that is text and, where asked, more.
   json page_of(const std::string& tables) {
-    folder_.file("lobes.toml", R"(
-[tool]
-teeth = 2
-diameter_mm = 10
-[cut]
-radial_depth_mm = 5
-direction = "down"
-feed_per_tooth_mm = 0.1
-[coefficients]
-tangential_n_per_mm2 = 600
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 600, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-y = [{ frequency_hz = 650, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-[lobes]
-spindle_speed_rpm = [4000, 16000]
-axial_depth_mm = [0.05, 4]
-)");
+    std::string cut = test_support::study_cut();
+    cut.replace(cut.find("[0.05, 20]"), 10, "[0.05, 4]");  // where some points have no limit
+    folder_.file("lobes.toml", cut);
     const std::filesystem::path study =
         folder_.file("study.toml", "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\n" + tables);
     const Verb& sweep = *std::ranges::find(verbs(), std::string("sweep"), &Verb::name);

@@ -19,6 +19,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/io/table.hpp"
 #include "robomill/jobs/sweep.hpp"
+#include "testing/jobs/study_cut.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -26,25 +27,7 @@ namespace statistics_test {
 
 using test::Folder;
 using test::rejection;
-
-constexpr const char* cut = R"(
-[tool]
-teeth = 2
-diameter_mm = 10
-[cut]
-radial_depth_mm = 5
-direction = "down"
-feed_per_tooth_mm = 0.1
-[coefficients]
-tangential_n_per_mm2 = 600
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 600, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-y = [{ frequency_hz = 650, damping_ratio = 0.02, modal_mass_kg = 0.5 }]
-[lobes]
-spindle_speed_rpm = [4000, 16000]
-axial_depth_mm = [0.05, 20]
-)";
+using test_support::study_cut;
 
 constexpr const char* head = R"(
 [study]
@@ -63,7 +46,7 @@ constexpr const char* boundary = "[boundary]\nvalue = \"abs_mu@8000,3\"\nhalving
 
 class Studies : public ::testing::Test {
  protected:
-  Studies() { folder_.file("lobes.toml", cut); }
+  Studies() { folder_.file("lobes.toml", study_cut()); }
   SweepResult run(const std::string& study, const std::string& into) {
     folder_.file("study.toml", head + study);
     return again(into);
