@@ -46,6 +46,7 @@ class ProgramActions {
 
   [[nodiscard]] int spawn(pid_t& process, std::vector<std::string>& words) const {
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     return ::posix_spawnp(&process, pointers.front(), &files_, &attributes_, pointers.data(), environ);

@@ -48,7 +48,7 @@ std::string submitted(const std::filesystem::path& script, std::vector<std::stri
     throw InvalidInput("sbatch", "cannot be started: " + end.complaint,
                        "Slurm's programs must be on PATH. --slurm --dry-run shows the scripts");
   }
-  const std::string number = end.said.substr(0, end.said.find_first_of(";\n"));  // NUMBER;CLUSTER of several clusters
+  std::string number = end.said.substr(0, end.said.find_first_of(";\n"));  // NUMBER;CLUSTER of several clusters
   if (end.code == 0 && is_job_number(number)) return number;
   const std::string said = in_one_line(end.complaint + " " + end.said);
   throw InvalidInput(

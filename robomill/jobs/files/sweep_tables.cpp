@@ -144,6 +144,7 @@ void set_numbers(StudyColumn& column) {
 template <class Unit>
 std::vector<StudyColumn> columns_named(const std::vector<std::string>& names, const Unit& unit) {
   std::vector<StudyColumn> out;
+  out.reserve(names.size());
   for (const std::string& name : names) out.push_back({.name = name, .unit = unit(name)});
   return out;
 }

@@ -65,6 +65,7 @@ Wanted wanted_of(const std::string& text, bool of_lobes) {
   const std::vector<std::string> numbers = parts_of(std::string_view(text).substr(at + 1), ',');
   const bool has_depth = *kind == Wanted::Kind::spectral_radius;
   std::vector<double> values;
+  values.reserve(numbers.size());
   for (const std::string& number : numbers) values.push_back(io::parse_number(number).value_or(-1.0));
   if (values.size() != (has_depth ? 2U : 1U) || !(values[0] > 0.0) || (has_depth && !(values[1] >= 0.0))) {
     throw reject(has_depth ? "must be abs_mu@RPM,MM" : "must have one speed in rpm behind @");
