@@ -183,7 +183,9 @@ const io::Schema<BoundaryTask>& boundary_task_table() {
       {key("value", &BoundaryTask::value, "as in study.collect: abs_mu@8000,0.5").required(),
        key("level", &BoundaryTask::level, "that it crosses, in its unit"),
        key("halvings", &BoundaryTask::halvings, "of the grid's steps").at_least(0.0).at_most(20.0),
-       key("most_points", &BoundaryTask::most_points, "that are done").at_least(1.0)});
+       key("most_points", &BoundaryTask::most_points, "that are done or interpolated").at_least(1.0),
+       key("interpolate", &BoundaryTask::interpolate,
+           "values whose side the values around them tell; false: each point is done")});
   return table;
 }
 

@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/jobs/sweep/grid_values.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-constexpr std::size_t most_axes = 8;
-constexpr int most_halvings = 20;
-/// An edge has a number of its own: that of its point, and its axis.
-constexpr double most_grid_points = 9.0e18 / most_axes;
+constexpr std::size_t all_axes = static_cast<std::size_t>(-1);
 
 enum class Sign { none, below, above };
 
@@ -30,22 +28,11 @@ void sort_once(std::vector<std::uint64_t>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// Numbers are well spread already, but for those of corners, which differ by strides.
-struct SpreadBits {
-  std::size_t operator()(std::uint64_t number) const noexcept {
-    number *= 0x9E3779B97F4A7C15U;
-    return static_cast<std::size_t>(number ^ (number >> 32U));
-  }
-};
-
 class BoundaryTracer {
  public:
   BoundaryTracer(const BoundaryOptions& options, const BoundaryValues& values)
-      : options_(options),
-        ask_(values),
-        grid_(options),
-        step_(std::uint64_t{1} << static_cast<unsigned>(options.halvings)) {
-    set_corners();
+      : options_(options), ask_(values), grid_(options), known_(grid_) {
+    set_step(coarse_step());
   }
 
   Boundary run() {
@@ -55,11 +42,9 @@ class BoundaryTracer {
       if (halve()) continue;
       out_.complete = false;
       cubes_ = whole;
-      step_ = std::uint64_t{1} << static_cast<unsigned>(options_.halvings - i);
-      set_corners();
+      set_step(coarse_step() >> static_cast<unsigned>(i));
     }
     out_.step = step_;
-    out_.evaluations = known_.size();
     out_.grid_points = grid_.points_of(step_);
     find_points();
     out_.cubes = std::move(cubes_);
@@ -69,8 +54,9 @@ class BoundaryTracer {
  private:
   using Numbers = std::vector<std::uint64_t>;
 
-  /// The corners of a cube, from its lowest: corner i is one step on along axis a where i has bit a.
-  void set_corners() {
+  /// And the corners of a cube, from its lowest: corner i is one step on along axis a where i has bit a.
+  void set_step(std::uint64_t step) {
+    step_ = step;
     corners_.assign(std::size_t{1} << grid_.axes(), 0);
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       for (std::size_t axis = 0; axis < grid_.axes(); ++axis) {
@@ -81,35 +67,73 @@ class BoundaryTracer {
 
   [[nodiscard]] static bool on(std::size_t corner, std::size_t axis) { return (corner >> axis & 1U) != 0; }
 
-  /// Evaluates what is not known of cubes that lie at these offsets. False: that is too much, and nothing is evaluated.
-  bool evaluate(const Numbers& from, const Numbers& offsets) {
-    Numbers asked;
-    for (const std::uint64_t first : from) {
+  /// Finds the values of cubes' points at these offsets. False: there would be too many points, and nothing is done.
+  bool find_values(const Numbers& cubes, const Numbers& offsets) {
+    Numbers wanted;
+    const auto are_too_many = [&] {
+      sort_once(wanted);
+      return known_.size() + wanted.size() > options_.most_points;
+    };
+    for (const std::uint64_t cube : cubes) {
       for (const std::uint64_t offset : offsets) {
-        if (known_.try_emplace(first + offset, 0.0).second) asked.push_back(first + offset);
+        if (!known_.has(cube + offset)) wanted.push_back(cube + offset);
       }
-      if (known_.size() <= options_.most_points) continue;
-      for (const std::uint64_t point : asked) known_.erase(point);
-      return false;
+      if (wanted.size() > 2 * options_.most_points && are_too_many()) return false;  // cubes share their corners
     }
-    if (asked.empty()) return true;
-    std::ranges::sort(asked);
-    const std::vector<double> values = ask_(asked);
-    if (values.size() != asked.size()) {
-      throw InvalidInput("values", fmt::format("are {} of {} points", values.size(), asked.size()));
+    if (are_too_many()) return false;
+    std::vector<Numbers> by_axes_between(grid_.axes() + 1);
+    for (const std::uint64_t point : wanted) {
+      by_axes_between[may_interpolate() ? known_.axes_between(point, step_) : 0].push_back(point);
     }
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      known_[asked[i]] = values[i];
-      out_.unknown += std::isnan(values[i]) ? 1 : 0;
-    }
+    for (const Numbers& points : by_axes_between) find_values_at(points);
     return true;
   }
 
+  /// Of points that do not depend on each other.
+  void find_values_at(const Numbers& points) {
+    Numbers asked;
+    std::vector<std::optional<GridValue>> expected;
+    std::vector<std::pair<std::uint64_t, GridValue>> found;
+    for (const std::uint64_t point : points) {
+      const bool has_coarser = options_.interpolate && step_ < coarse_step();
+      const std::optional<GridValue> between = has_coarser ? known_.interpolated(point, step_) : std::nullopt;
+      if (between && may_interpolate() && std::abs(between->value) > between->error) {
+        found.emplace_back(point, *between);
+      } else {
+        asked.push_back(point);
+        expected.push_back(between);
+      }
+    }
+    out_.interpolated += found.size();
+    for (const auto& [point, value] : found) known_.set(point, value);
+    if (!asked.empty()) evaluate(asked, expected);
+  }
+
+  void evaluate(const Numbers& points, const std::vector<std::optional<GridValue>>& expected) {
+    const std::vector<double> values = ask_(points);
+    if (values.size() != points.size()) {
+      throw InvalidInput("values", fmt::format("are {} of {} points", values.size(), points.size()));
+    }
+    out_.evaluations += points.size();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      known_.set(points[i], {.value = values[i]});
+      out_.unknown += std::isnan(values[i]) ? 1 : 0;
+      if (!expected[i]) continue;
+      ++out_.compared;
+      out_.outside += std::abs(values[i] - expected[i]->value) <= expected[i]->error ? 0 : 1;
+    }
+  }
+
+  [[nodiscard]] bool may_interpolate() const { return options_.interpolate && step_ < coarse_step() / 2; }
+  [[nodiscard]] std::uint64_t coarse_step() const {
+    return std::uint64_t{1} << static_cast<unsigned>(options_.halvings);
+  }
+
   /// Two corners of a cube have different signs; of the corners of one of its faces where an axis is given.
-  [[nodiscard]] bool changes(std::uint64_t cube, std::size_t axis = most_axes, bool side = false) const {
+  [[nodiscard]] bool changes(std::uint64_t cube, std::size_t axis = all_axes, bool side = false) const {
     bool below = false, above = false;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
-      if (axis < most_axes && on(i, axis) != side) continue;
+      if (axis != all_axes && on(i, axis) != side) continue;
       const Sign sign = sign_of(known_.at(cube + corners_[i]));
       below |= sign == Sign::below;
       above |= sign == Sign::above;
@@ -130,7 +154,7 @@ class BoundaryTracer {
       }
       all = std::move(more);
     }
-    evaluate(all, corners_);  // validate() has compared their number
+    find_values(all, corners_);  // validate() has compared their number
     std::ranges::copy_if(all, std::back_inserter(cubes_), [this](std::uint64_t cube) { return changes(cube); });
     std::ranges::sort(cubes_);
   }
@@ -138,11 +162,10 @@ class BoundaryTracer {
   /// False: it takes too many points.
   bool halve() {
     const Numbers whole = std::exchange(cubes_, {}), edges = crossed_edges(whole);
-    step_ /= 2;
+    set_step(step_ / 2);
     Numbers middles;
     for (const std::uint64_t edge : edges) middles.push_back(start_of(edge) + step_ * grid_.stride(axis_of(edge)));
-    if (!evaluate(middles, {0})) return false;
-    set_corners();
+    if (!find_values(middles, {0})) return false;
     kept_.clear();
     if (!follow(around_crossed_halves(edges))) return false;
     const auto has_part = [this](std::uint64_t cube) {
@@ -154,7 +177,7 @@ class BoundaryTracer {
     for (const std::uint64_t cube : hidden) {
       for (const std::uint64_t corner : corners_) parts.push_back(cube + corner);
     }
-    if (!evaluate(parts, corners_)) return false;
+    if (!find_values(parts, corners_)) return false;
     std::erase_if(parts, [this](std::uint64_t cube) { return !changes(cube); });
     if (!follow(std::move(parts))) return false;
     for (const std::uint64_t cube : hidden) out_.lost_cubes += has_part(cube) ? 0 : 1;
@@ -167,7 +190,7 @@ class BoundaryTracer {
   bool follow(Numbers cubes) {
     while (!cubes.empty()) {
       sort_once(cubes);
-      if (!evaluate(cubes, corners_)) return false;
+      if (!find_values(cubes, corners_)) return false;
       kept_.insert(cubes.begin(), cubes.end());
       Numbers next;
       for (const std::uint64_t cube : cubes) add_crossed_neighbours(cube, next);
@@ -260,63 +283,14 @@ class BoundaryTracer {
   const BoundaryOptions& options_;
   const BoundaryValues& ask_;
   BoundaryGrid grid_;
-  std::uint64_t step_;  ///< edge of the cubes, in steps of the finest grid
+  std::uint64_t step_ = 1;  ///< edge of the cubes, in steps of the finest grid
   Numbers corners_ = {}, cubes_ = {};
-  std::unordered_set<std::uint64_t, SpreadBits> kept_ = {};  ///< cubes of the present halving
-  std::unordered_map<std::uint64_t, double, SpreadBits> known_ = {};
+  std::unordered_set<std::uint64_t, GridPointHash> kept_ = {};  ///< cubes of the present halving
+  GridValues known_;
   Boundary out_ = {};
 };
 
 }  // namespace
-
-void BoundaryOptions::validate() const {
-  if (axes.empty() || axes.size() > most_axes) {
-    throw InvalidInput("axes", static_cast<double>(axes.size()), "", fmt::format("must be 1 to {}", most_axes));
-  }
-  if (halvings < 0 || halvings > most_halvings) {
-    throw InvalidInput("halvings", halvings, "", fmt::format("must lie between 0 and {}", most_halvings));
-  }
-  double coarse = 1.0, finest = 1.0;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::string member = fmt::format("axes[{}]", i);
-    const BoundaryAxis& axis = axes[i];
-    if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || !(axis.low < axis.high)) {
-      throw InvalidInput(member, "must have a range that rises");
-    }
-    if (axis.count < 2) throw InvalidInput(member + ".count", axis.count, "", "must be >= 2");
-    coarse *= axis.count;
-    finest *= std::ldexp(axis.count - 1.0, halvings) + 1.0;
-  }
-  if (coarse > static_cast<double>(most_points)) {
-    throw InvalidInput("most_points", static_cast<double>(most_points), "points",
-                       fmt::format("must be at least the {} of the coarse grid", coarse));
-  }
-  if (finest > most_grid_points) {
-    throw InvalidInput("halvings", halvings, "",
-                       fmt::format("must leave the finest grid below {:.0e} points", most_grid_points));
-  }
-}
-
-BoundaryGrid::BoundaryGrid(const BoundaryOptions& options) : axes_(options.axes) {
-  options.validate();
-  for (const BoundaryAxis& axis : axes_) {
-    counts_.push_back((static_cast<std::uint64_t>(axis.count - 1) << static_cast<unsigned>(options.halvings)) + 1);
-  }
-  strides_.assign(axes_.size(), 1);
-  for (std::size_t i = axes_.size() - 1; i > 0; --i) strides_[i - 1] = strides_[i] * counts_[i];
-}
-
-double BoundaryGrid::at(std::size_t axis, double place) const {
-  const BoundaryAxis& one = axes_[axis];
-  const double share = place / static_cast<double>(counts_[axis] - 1);
-  return share >= 1.0 ? one.high : one.low + (one.high - one.low) * share;
-}
-
-double BoundaryGrid::points_of(std::uint64_t step) const {
-  double out = 1.0;
-  for (const std::uint64_t count : counts_) out *= static_cast<double>((count - 1) / step + 1);
-  return out;
-}
 
 Boundary trace_boundary(const BoundaryOptions& options, const BoundaryValues& values) {
   return BoundaryTracer(options, values).run();

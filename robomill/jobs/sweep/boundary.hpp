@@ -1,55 +1,15 @@
 #pragma once
 #include <Eigen/Core>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "robomill/jobs/sweep/boundary_grid.hpp"
+
 // Method: robomill/jobs/README.md, "A boundary (`sweep/boundary.hpp`)"
 
 namespace robomill::jobs {
-
-/// A parameter and the coarse grid along it.
-struct BoundaryAxis {
-  double low = 0.0, high = 1.0;  ///< in any unit; low < high
-  int count = 2;                 ///< points of the coarse grid, both ends among them, >= 2
-};
-
-struct BoundaryOptions {
-  std::vector<BoundaryAxis> axes = {};    ///< 1 to 8
-  int halvings = 4;                       ///< of the coarse grid's steps, 0 to 20
-  std::uint64_t most_points = 1'000'000;  ///< that are evaluated; at least those of the coarse grid
-
-  /// @throws InvalidInput naming the member
-  void validate() const;
-};
-
-/// The finest grid. A point is one number: its places along the axes, the last of which counts fastest.
-class BoundaryGrid {
- public:
-  /// @throws InvalidInput as BoundaryOptions::validate
-  explicit BoundaryGrid(const BoundaryOptions& options);
-
-  [[nodiscard]] std::size_t axes() const { return axes_.size(); }
-  [[nodiscard]] std::uint64_t stride(std::size_t axis) const { return strides_[axis]; }
-  /// Points along an axis.
-  [[nodiscard]] std::uint64_t count(std::size_t axis) const { return counts_[axis]; }
-  [[nodiscard]] std::uint64_t place(std::uint64_t point, std::size_t axis) const {
-    return point / strides_[axis] % counts_[axis];
-  }
-  /// At a place along an axis: at those of the coarse grid the bits do not depend on the halvings.
-  [[nodiscard]] double at(std::size_t axis, double place) const;
-  [[nodiscard]] double coordinate(std::uint64_t point, std::size_t axis) const {
-    return at(axis, static_cast<double>(place(point, axis)));
-  }
-  /// Of a grid whose steps are so many of the finest.
-  [[nodiscard]] double points_of(std::uint64_t step) const;
-
- private:
-  std::vector<BoundaryAxis> axes_;
-  std::vector<std::uint64_t> counts_, strides_;
-};
 
 /// The values of a function at new points of the finest grid, which rise; one each, NaN where it has none. It may
 /// compute them in any order, on any number of threads.
@@ -62,6 +22,9 @@ struct Boundary {
   std::vector<std::uint64_t> cubes = {};  ///< that the boundary crosses: their lowest corners, which rise
   std::uint64_t step = 1;                 ///< edge of these cubes, in steps of the finest grid
   std::uint64_t evaluations = 0;
+  std::uint64_t interpolated = 0;   ///< further points, whose signs were taken from the values around them
+  std::uint64_t compared = 0;       ///< evaluations at points that had an interpolated value, too
+  std::uint64_t outside = 0;        ///< of them, further from it than its estimated error
   double grid_points = 0.0;         ///< that a grid with these steps has
   std::uint64_t unknown = 0;        ///< points whose value is NaN
   std::uint64_t lost_cubes = 0;     ///< crossed before a halving, and in no part after it: NaN hides the crossing
@@ -78,6 +41,11 @@ struct Boundary {
 /// the neighbours across each face whose corners change sign: so a branch is followed where the coarse grid missed it.
 /// Of a cube that has no part then, since a value there is NaN, all parts are evaluated. Each point is evaluated once.
 /// Results depend on the values alone.
+///
+/// From the second halving on a point is not evaluated where its interpolated value (GridValues::interpolated) is
+/// beyond its estimated error on one side of 0: only its sign is wanted. Points between those of the coarser grid along
+/// fewer axes come first. Where the function is smooth on the grid's scale, few points next to the boundary are left to
+/// evaluate.
 ///
 /// Not seen: what changes no sign at a corner of the coarse grid and is not connected to what does, as a closed surface
 /// within one coarse cube; a set where f touches 0 without a change of sign.

@@ -30,7 +30,8 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 BoundaryOptions cube_of(std::size_t axes, double low, double high, int count, int halvings) {
   return {.axes = std::vector<BoundaryAxis>(axes, {.low = low, .high = high, .count = count}),
           .halvings = halvings,
-          .most_points = 5'000'000};
+          .most_points = 5'000'000,
+          .interpolate = false};
 }
 
 Point point_of(const BoundaryGrid& grid, std::uint64_t number) {
@@ -185,17 +186,75 @@ double turning_limit(double speed, double damping_ratio) {
   return least;
 }
 
+// A waved surface in four parameters: all signs that are interpolated are right.
+TEST(Boundary, IsTheSameByInterpolationWhereTheFunctionIsSmooth) {
+  BoundaryOptions options = cube_of(4, 0.0, 1.0, 5, 3);
+  const auto wave = [](const Point& x) {
+    return x[3] - 0.5 - 0.15 * std::sin(5.0 * x[0]) * std::cos(4.0 * x[1]) - 0.1 * std::exp(x[2]) * x[0];
+  };
+  const Boundary whole = trace(options, wave);
+  options.interpolate = true;
+  const Boundary found = trace(options, wave);
+  EXPECT_EQ(found.cubes, whole.cubes);
+  EXPECT_EQ(found.step, 1U);
+  const double ratio = found.grid_points / static_cast<double>(found.evaluations);
+  RecordProperty("grid_over_evaluations", std::to_string(ratio));
+  EXPECT_GT(ratio, 30.0);
+  EXPECT_EQ(found.evaluations + found.interpolated, whole.evaluations);
+  EXPECT_GT(found.compared, 100U);
+  EXPECT_EQ(found.outside, 0U);
+  ASSERT_EQ(found.points.rows(), whole.points.rows());
+  EXPECT_LT((found.points - whole.points).cwiseAbs().maxCoeff(), 0.3 / 32.0) << "on the same edges";
+}
+
+// A crease runs through every cube at one third of a parameter, and a step ends the surface.
+TEST(Boundary, IsWithinAStepByInterpolationAcrossCreasesAndSteps) {
+  BoundaryOptions options = cube_of(4, 0.0, 1.0, 5, 3);
+  const auto creased = [](const Point& x) {
+    const double floor = 0.3 + 0.4 * std::abs(x[0] + 0.5 * x[1] - 0.61) + 0.1 * x[2];
+    return x[3] - (x[2] + 0.3 * x[0] > 0.9 ? floor + 0.2 : floor);
+  };
+  const Boundary whole = trace(options, creased);
+  options.interpolate = true;
+  const Boundary found = trace(options, creased);
+  EXPECT_GT(whole.evaluations, 2 * found.evaluations);
+  const BoundaryGrid grid(options);
+  const std::set<std::uint64_t> all(whole.cubes.begin(), whole.cubes.end());
+  std::size_t others = 0;
+  for (const std::uint64_t cube : found.cubes) others += all.contains(cube) ? 0 : 1;
+  EXPECT_LT(others, whole.cubes.size() / 100);
+  EXPECT_GT(found.cubes.size(), whole.cubes.size() * 99 / 100);
+}
+
+/// Distances of points from where the closed form's depth is theirs, in steps of the grid, to first order.
+double largest_deviation_steps(const BoundaryGrid& grid, const Boundary& found, const Function& height) {
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < found.points.rows(); i += 97) {
+    const Point x = row(found, i);
+    double squares = 0.0;
+    for (std::size_t axis = 0; axis < grid.axes(); ++axis) {
+      const double step = grid.at(axis, 1.0) - grid.at(axis, 0.0);
+      Point more = x, less = x;
+      more[axis] += 0.5 * step;
+      less[axis] -= 0.5 * step;
+      squares += std::pow(height(more) - height(less), 2);
+    }
+    most = std::max(most, std::abs(height(x)) / std::sqrt(squares));
+  }
+  return most;
+}
+
 // The stability of a turned part over speed, depth, damping and stiffness, the last two as uncertain as they are.
 TEST(Boundary, OfAStabilityLimitInFourParametersNeedsFewPointsOfTheGrid) {
-  const BoundaryOptions options = {.axes = {{.low = 0.6, .high = 1.2, .count = 33},
-                                            {.low = 0.0, .high = 4.0, .count = 17},
-                                            {.low = 0.027, .high = 0.033, .count = 3},
-                                            {.low = 9.0, .high = 11.0, .count = 3}},
-                                   .halvings = 3,
-                                   .most_points = 5'000'000};
+  BoundaryOptions options = {.axes = {{.low = 0.6, .high = 1.2, .count = 33},
+                                      {.low = 0.0, .high = 4.0, .count = 17},
+                                      {.low = 0.027, .high = 0.033, .count = 3},
+                                      {.low = 9.0, .high = 11.0, .count = 3}},
+                             .halvings = 3,
+                             .most_points = 5'000'000};
   const BoundaryGrid grid(options);
   std::vector<double> limits(grid.count(0) * grid.count(2), 0.0);
-  const Boundary found = trace_boundary(options, [&](std::span<const std::uint64_t> points) {
+  const BoundaryValues heights = [&](std::span<const std::uint64_t> points) {
     std::vector<double> out;
     for (const std::uint64_t point : points) {
       double& limit = limits[grid.place(point, 0) * grid.count(2) + grid.place(point, 2)];
@@ -203,25 +262,19 @@ TEST(Boundary, OfAStabilityLimitInFourParametersNeedsFewPointsOfTheGrid) {
       out.push_back(limit * grid.coordinate(point, 3) - grid.coordinate(point, 1));
     }
     return out;
-  });
-  EXPECT_TRUE(found.complete);
-  const double ratio = found.grid_points / static_cast<double>(found.evaluations);
-  RecordProperty("grid_over_evaluations", std::to_string(ratio));
-  EXPECT_GT(ratio, 20.0);
-  // Along the depth f is a line, so that these points have the closed form's depth.
-  std::size_t along_depth = 0;
-  const auto on_grid = [&](const Point& x, std::size_t axis) {
-    const double place = (x[axis] - options.axes[axis].low) / (options.axes[axis].high - options.axes[axis].low) *
-                         static_cast<double>(grid.count(axis) - 1);
-    return std::abs(place - std::round(place)) < 1e-9;
   };
-  for (Eigen::Index i = 0; i < found.points.rows(); i += 97) {
-    const Point x = row(found, i);
-    if (on_grid(x, 1)) continue;
-    ++along_depth;
-    ASSERT_NEAR(x[1], turning_limit(x[0], x[2]) * x[3], 1e-9);
+  for (const bool interpolate : {false, true}) {
+    options.interpolate = interpolate;
+    const Boundary found = trace_boundary(options, heights);
+    EXPECT_TRUE(found.complete);
+    const double ratio = found.grid_points / static_cast<double>(found.evaluations);
+    RecordProperty(interpolate ? "grid_over_evaluations_interpolated" : "grid_over_evaluations", std::to_string(ratio));
+    EXPECT_GT(ratio, interpolate ? 75.0 : 20.0);
+    EXPECT_GT(found.points.rows(), 100'000);
+    EXPECT_LT(
+        largest_deviation_steps(grid, found, [](const Point& x) { return turning_limit(x[0], x[2]) * x[3] - x[1]; }),
+        0.05);
   }
-  EXPECT_GT(along_depth, 300U);
 }
 
 // It ends where the function has no values.
@@ -261,16 +314,20 @@ TEST(Boundary, LiesInTheMiddleOfAnEdgeToInfinity) {
 TEST(Boundary, HasAtTheLimitTheLastWholeHalving) {
   const auto ball = [](const Point& x) { return length_of(x) - 1.0; };
   BoundaryOptions options = cube_of(3, -1.5, 1.5, 4, 5);
-  const std::uint64_t all = trace(options, ball).evaluations;
+  options.interpolate = true;
+  const Boundary whole = trace(options, ball);
+  const std::uint64_t all = whole.evaluations + whole.interpolated;
   for (const std::uint64_t most : {std::uint64_t{64}, std::uint64_t{1000}, all - 1}) {
     options.most_points = most;
     const Boundary cut_off = trace(options, ball);
     EXPECT_FALSE(cut_off.complete);
-    EXPECT_LE(cut_off.evaluations, most);
+    EXPECT_LE(cut_off.evaluations + cut_off.interpolated, most);
     ASSERT_GT(cut_off.step, 1U);
     int halvings = 5;
     for (std::uint64_t step = cut_off.step; step > 1; step /= 2) --halvings;
-    const Boundary fewer = trace(cube_of(3, -1.5, 1.5, 4, halvings), ball);
+    BoundaryOptions coarser = cube_of(3, -1.5, 1.5, 4, halvings);
+    coarser.interpolate = true;
+    const Boundary fewer = trace(coarser, ball);
     EXPECT_EQ(cut_off.points, fewer.points);
     EXPECT_EQ(cut_off.cubes.size(), fewer.cubes.size());
     EXPECT_EQ(cut_off.grid_points, fewer.grid_points);

@@ -102,6 +102,13 @@ void add_boundary(const BoundaryStatistics& found, std::vector<std::string>& lin
                               printable(found.task.value), found.task.level, found.points, printable(steps)));
   lines.push_back(fmt::format("{} evaluations; the grid has {:.4g}: {:.3g} times as many.", found.evaluations,
                               found.grid_points, found.grid_points / static_cast<double>(found.evaluations)));
+  if (found.interpolated > 0) {
+    lines.push_back(
+        fmt::format("{} more points were interpolated. Of {} values that were evaluated and interpolated, {} differ by "
+                    "more than the "
+                    "estimated error.",
+                    found.interpolated, found.compared, found.outside));
+  }
   if (!found.complete) {
     lines.push_back(fmt::format("Warning: most_points = {} was reached before all {} halvings were done.",
                                 found.task.most_points, found.task.halvings));
@@ -175,7 +182,8 @@ void add_probability(const ProbabilityStatistics& found, std::vector<std::string
 
 BoundaryOptions boundary_options(const Study& study) {
   BoundaryOptions out{.halvings = study.boundary->halvings,
-                      .most_points = static_cast<std::uint64_t>(study.boundary->most_points)};
+                      .most_points = static_cast<std::uint64_t>(study.boundary->most_points),
+                      .interpolate = study.boundary->interpolate};
   for (const Variation& one : study.vary) {
     out.axes.push_back({.low = one.range[0], .high = one.range[1], .count = one.count});
   }
@@ -186,6 +194,9 @@ BoundaryStatistics summary_of_boundary(const Study& study, const Boundary& bound
   BoundaryStatistics out{.task = *study.boundary,
                          .points = static_cast<std::uint64_t>(boundary.points.rows()),
                          .evaluations = boundary.evaluations,
+                         .interpolated = boundary.interpolated,
+                         .compared = boundary.compared,
+                         .outside = boundary.outside,
                          .grid_points = boundary.grid_points,
                          .unknown = boundary.unknown,
                          .lost_cubes = boundary.lost_cubes,

@@ -23,6 +23,7 @@ struct BoundaryStatistics {
   std::vector<std::pair<std::string, double>> steps = {};        ///< of each key, in its unit: how fine it is
   std::uint64_t points = 0;                                      ///< of the boundary
   std::uint64_t evaluations = 0;                                 ///< points of the study
+  std::uint64_t interpolated = 0, compared = 0, outside = 0;     ///< as Boundary
   double grid_points = 0.0;                                      ///< that a grid of these steps has
   std::uint64_t unknown = 0, lost_cubes = 0, middle_points = 0;  ///< as Boundary
   bool complete = true;                                          ///< as Boundary

@@ -42,7 +42,7 @@ std::string grid(int first, int second) {
          std::to_string(second) + "\n";
 }
 
-constexpr const char* boundary = "[boundary]\nvalue = \"abs_mu@8000,3\"\nhalvings = 3\n";
+constexpr const char* boundary = "[boundary]\nvalue = \"abs_mu@8000,3\"\nhalvings = 3\ninterpolate = false\n";
 
 class Studies : public ::testing::Test {
  protected:

@@ -42,6 +42,7 @@ struct BoundaryTask {
   double level = 1.0;      ///< in the value's unit
   int halvings = 4;        ///< of the grid's steps
   int most_points = 100'000;
+  bool interpolate = true;  ///< as BoundaryOptions
 };
 
 /// Sobol' indices of all values that are collected (sweep/sensitivity.hpp) over the keys that are sampled, all by the

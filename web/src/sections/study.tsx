@@ -121,6 +121,11 @@ export function BoundarySection({ result, points }: { result: BoundaryResult; po
       <p>
         {fixed(result.evaluations, 0)} evaluations.{times} Steps: {steps.join(', ')}.
       </p>
+      {result.interpolated > 0 && (
+        <p>
+          {fixed(result.interpolated, 0)} more points were interpolated. Of {fixed(result.compared, 0)} values that were evaluated and interpolated, {fixed(result.outside, 0)} differ by more than the estimated error.
+        </p>
+      )}
       {!result.complete && <p>The most points were reached before all halvings were done.</p>}
       {result.unknown > 0 && <p>{result.unknown} points have no value; the boundary ends there.</p>}
       {result.points === 0 && <p>No point of the coarse grid lies on another side of the level than the others.</p>}
