@@ -234,6 +234,24 @@ bool TomlFile::paths(std::string_view key, std::vector<std::filesystem::path>& o
   return true;
 }
 
+bool TomlFile::literals(std::string_view key, std::vector<std::string>& out) {
+  const toml::node* node = state_->ask(key);
+  if (node == nullptr) return false;
+  std::vector<std::string> values;
+  const auto take = [&](const toml::node& entry, std::string place) {
+    std::optional<std::string> text = literal_of(entry, place);
+    if (!text) throw reject(place, "must be a finite number, a text, true or false, or a list of them");
+    values.push_back(*std::move(text));
+  };
+  if (const toml::array* array = node->as_array()) {
+    for (std::size_t i = 0; i < array->size(); ++i) take((*array)[i], fmt::format("{}[{}]", key, i));
+  } else {
+    take(*node, std::string(key));
+  }
+  out = std::move(values);
+  return true;
+}
+
 bool TomlFile::path(std::string_view key, std::filesystem::path& out) {
   std::string name;
   if (!text(key, name)) return false;

@@ -62,6 +62,9 @@ class TomlFile {
   /// A path, made relative to the folder of the file that gives it.
   bool path(std::string_view key, std::filesystem::path& out);
   bool paths(std::string_view key, std::vector<std::filesystem::path>& out);
+  /// Values as TOML writes them in one line: "3", "\"up\"", "[[1, 2], [3, 4]]". Each entry of a list is one: a number,
+  /// a text, true or false, or a list of them to any depth. A single value is a list of one.
+  bool literals(std::string_view key, std::vector<std::string>& out);
   /// One of the named values.
   template <class Enum, std::size_t n>
   bool choice(std::string_view key, const Name<Enum> (&names)[n], Enum& out) {

@@ -110,6 +110,57 @@ TEST_F(Toml, NamesFileLineKeyAndValueOfAWrongType) {
             name + ":2: tool.helix_deg: is missing. The angle of the flutes");
 }
 
+// Each value once more by TOML itself: what is written is read as the same.
+TEST(TomlFiles, GivesValuesAsTomlWritesThem) {
+  const Folder folder;
+  TomlFile file(folder.file("v.toml", R"(
+one = 7
+plain = [1, 2.50, 1e-7, 9007199254740993, "a \"b\"", true]
+lists = [
+  [6000, 12000],   # from, to
+  [[1, 2],
+   [3.5, "x#y"]],  # rows
+  [],
+  0x10,
+]
+none = []
+)"));
+  std::vector<std::string> out = {"as it was"};
+  EXPECT_FALSE(file.literals("absent", out));
+  EXPECT_EQ(out, std::vector<std::string>{"as it was"});
+  EXPECT_TRUE(file.literals("one", out));
+  EXPECT_EQ(out, std::vector<std::string>{"7"});
+  EXPECT_TRUE(file.literals("plain", out));
+  EXPECT_EQ(out, (std::vector<std::string>{"1", "2.5", "1e-07", "9007199254740993", R"("a \"b\"")", "true"}));
+  EXPECT_TRUE(file.literals("lists", out));
+  EXPECT_EQ(out, (std::vector<std::string>{"[6000, 12000]", R"([[1, 2], [3.5, "x#y"]])", "[]", "16"}));
+  TomlFile again(TomlSource("again.toml", "[t]", {{"t.lists", "[" + out[0] + ", " + out[1] + ", [], 16]"}}));
+  std::vector<std::string> same;
+  EXPECT_TRUE(again.literals("t.lists", same));
+  EXPECT_EQ(same, out);
+  EXPECT_TRUE(file.literals("none", out));
+  EXPECT_TRUE(out.empty());
+}
+
+TEST(TomlFiles, NamesTheLineOfWhatIsNoValue) {
+  const auto says = [](const std::string& text) {
+    TomlFile file(TomlSource("v.toml", "[[vary]]\nvalues = " + text));
+    std::vector<std::string> out;
+    return rejection([&] { file.literals("vary[0].values", out); });
+  };
+  const std::string rule = "; must be a finite number, a text, true or false, or a list of them";
+  const std::string only = rule.substr(2);
+  EXPECT_EQ(says("{ a = 1 }"), "v.toml:2: vary[1].values: " + only);
+  EXPECT_EQ(says("1979-05-27"), "v.toml:2: vary[1].values: " + only);
+  EXPECT_EQ(says("[[1, 2],\n[3,\n{ a = 1 }]]"), "v.toml:4: vary[1].values[2][2]: " + only);
+  EXPECT_EQ(says("[\n1,\n[\n[2,\n1979-05-27]]]"), "v.toml:6: vary[1].values[2][1][2]: " + only);
+  EXPECT_EQ(says("[1,\n[2,\ninf]]"), "v.toml:4: vary[1].values[2][2] = inf" + rule);
+  EXPECT_EQ(says("[nan]"), "v.toml:2: vary[1].values[1] = nan" + rule);
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  EXPECT_NE(rejection([&] { TomlFile file(TomlSource("v.toml", "values = " + deep)); }).find("is no TOML"),
+            std::string::npos);
+}
+
 // The message that a user of the library is promised: file, line, key, value and unit of the file, the rule and the
 // hint.
 TEST_F(Toml, ReportsTheErrorOfAMemberInItsOwnWords) {

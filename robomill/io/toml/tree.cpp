@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/toml/edit.hpp"
 
 namespace robomill::io {
 namespace {
@@ -139,6 +142,25 @@ std::string value_text(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
   if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
   return {};
+}
+
+std::optional<std::string> literal_of(const toml::node& node, std::string& place) {
+  if (const auto* text = node.as_string()) return toml_quoted(text->get());
+  const auto* real = node.as_floating_point();
+  if (node.is_boolean() || node.is_integer() || (real != nullptr && std::isfinite(real->get())))
+    return value_text(node);
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return std::nullopt;
+  std::string out = "[";
+  const std::size_t length = place.size();
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    fmt::format_to(std::back_inserter(place), "[{}]", i);
+    const std::optional<std::string> entry = literal_of((*array)[i], place);
+    if (!entry) return std::nullopt;
+    place.resize(length);
+    out += (i == 0 ? "" : ", ") + *entry;
+  }
+  return out + "]";
 }
 
 bool is_list_of_tables(const toml::array& array) {

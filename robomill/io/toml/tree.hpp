@@ -44,6 +44,11 @@ bool put(toml::node& node, std::string_view path, const toml::node& value);
 /// A value as the file has it; empty for tables and arrays.
 [[nodiscard]] std::string value_text(const toml::node& node);
 
+/// A finite number, a text, true or false, or a list of them to any depth, as TOML writes it in one line; nothing where
+/// the node is another value.
+/// @param place  the path of the node; where nothing comes back, of what in it is another value
+[[nodiscard]] std::optional<std::string> literal_of(const toml::node& node, std::string& place);
+
 [[nodiscard]] bool is_list_of_tables(const toml::array& array);
 
 /// Where places of toml++ (line and character from 1) stand among the bytes of a text.
