@@ -196,6 +196,8 @@ class Definitions {
       case Holds::table:
         if (key.table == nullptr) return {{"type", "object"}};
         return reference(*key.table);
+      case Holds::list:
+        return list_reference();
     }
     if (std::isfinite(key.rule.lowest)) out[key.rule.above ? "exclusiveMinimum" : "minimum"] = key.rule.lowest;
     if (std::isfinite(key.rule.highest)) out[key.rule.below ? "exclusiveMaximum" : "maximum"] = key.rule.highest;
@@ -213,6 +215,17 @@ class Definitions {
       tables_[name] = std::move(schema);
     }
     return {{"$ref", "#/$defs/" + name}};
+  }
+
+  /// A list whose entries are plain or such lists.
+  Json list_reference() {
+    const char* const name = "nested_list";
+    const Json self = {{"$ref", std::string("#/$defs/") + name}};
+    Json any = Json::array();
+    for (const char* plain : {"number", "string", "boolean"}) any.push_back({{"type", plain}});
+    any.push_back(self);
+    tables_[name] = {{"type", "array"}, {"items", {{"anyOf", std::move(any)}}}};
+    return self;
   }
 
   /// The same, or null. Numbers that are not finite are null wherever they stand.

@@ -195,6 +195,21 @@ TEST(Schema, IsAJsonSchemaOfWhatItWrites) {
   EXPECT_EQ(schema["$defs"]["mode"]["properties"]["damping_ratio"]["default"], 0.02);
 }
 
+// What a list of lists holds at its ends is said once, and refers to itself.
+TEST(Schema, OfNestedListsSaysWhatTheyHold) {
+  TableInfo table{.name = "steps"};
+  for (const char* name : {"values", "others"})
+    table.keys.push_back({.name = name, .holds = Holds::number, .lists = 1, .also = {Holds::list}});
+  const Json schema = json_schema(table);
+  const Json self = {{"$ref", "#/$defs/nested_list"}}, number = {{"type", "number"}};
+  const Json one = {{"anyOf", Json::array({number, self})}};
+  for (const char* name : {"values", "others"})
+    EXPECT_EQ(schema["properties"][name]["items"], one) << schema["properties"][name].dump();
+  const Json plain = Json::array({number, {{"type", "string"}}, {{"type", "boolean"}}, self});
+  EXPECT_EQ(schema["$defs"]["nested_list"], Json({{"type", "array"}, {"items", {{"anyOf", plain}}}}));
+  EXPECT_EQ(schema["$defs"].size(), 1U);
+}
+
 struct Sensor {
   int port = 0;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();

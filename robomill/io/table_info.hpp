@@ -12,7 +12,17 @@
 namespace robomill::io {
 
 /// What a key holds.
-enum class Holds { number, integer, boolean, text, path, word, complex, table };
+enum class Holds {
+  number,
+  integer,
+  boolean,
+  text,
+  path,
+  word,
+  complex,
+  table,
+  list  ///< of numbers, texts and booleans, or of such lists, to any depth
+};
 
 /// What a table is for.
 enum class Use {
