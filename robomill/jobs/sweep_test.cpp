@@ -400,7 +400,7 @@ values = [9000]
       << result.reasons[0];
 }
 
-TEST_F(Sweeps, SetKeysToNumbersTextsAndBooleans) {
+TEST_F(Sweeps, SetKeysToNumbersTextsBooleansAndLists) {
   const auto values = [&](const std::string& text) {
     folder_.file("study.toml",
                  "[study]\njob = \"lobes\"\nbase = \"lobes.toml\"\ncollect = \"limit@8000\"\n[[vary]]\nkey = \"a\"\n" +
@@ -415,11 +415,19 @@ TEST_F(Sweeps, SetKeysToNumbersTextsAndBooleans) {
   EXPECT_EQ(values("[\"up\", \"a \\\"b\\\"\"]"), "\"up\";\"a \\\"b\\\"\";");
   EXPECT_EQ(values("7"), "7;");
   const auto says = [&](const std::string& text) { return rejection([&] { static_cast<void>(values(text)); }); };
-  for (const char* text : {"[{ a = 1 }]", "[[1, 2]]"}) {
-    EXPECT_NE(says(text).find("vary[1].values: must be numbers, texts, true or false"), std::string::npos)
-        << says(text);
-  }
-  EXPECT_NE(says("[]").find("must not be empty"), std::string::npos) << says("[]");
+  EXPECT_EQ(values("[[6000, 12000], 7000, [\"a, b\", true], [[1, 2.5], [3, 4]], []]"),
+            "[6000, 12000];7000;[\"a, b\", true];[[1, 2.5], [3, 4]];[];");
+  EXPECT_EQ(values("[\n  [6000, 12000],  # from, to\n  [8000,\n   16000],\n]"), "[6000, 12000];[8000, 16000];");
+  EXPECT_NE(says("[]").find("study.toml:7: vary[1].values: must not be empty"), std::string::npos) << says("[]");
+  const auto rejects = [&](const std::string& text, const std::string& place) {
+    EXPECT_NE(says(text).find("study.toml:" + place), std::string::npos) << says(text);
+    EXPECT_NE(says(text).find("must be a finite number, a text, true or false, or a list of them"), std::string::npos);
+  };
+  rejects("{ a = 1 }", "7: vary[1].values: ");
+  rejects("[{ a = 1 }]", "7: vary[1].values[1]: ");
+  rejects("[[1, 2],\n[3, [{ a = 1 }]]]", "8: vary[1].values[2][2][1]: ");
+  rejects("[[1, 2],\n[3, inf]]", "8: vary[1].values[2][2] = inf; ");
+  rejects("1979-05-27", "7: vary[1].values: ");
 }
 
 TEST_F(Sweeps, TakeAnyNumberOfADocument) {

@@ -34,32 +34,11 @@ std::string literal_of_cell(std::string_view cell) {
   return io::parse_cell(cell) ? fmt::format("{}", *io::parse_cell(cell)) : io::toml_quoted(cell);
 }
 
-/// A value as TOML writes it.
-std::string literal_of(const io::Json& value) {
-  if (value.is_number()) return fmt::format("{}", value.get<double>());
-  if (value.is_string()) return io::toml_quoted(value.get<std::string>());
-  return value.dump();
-}
-
-/// What a document has at a key where that is a plain value, or a list of them.
-std::optional<io::Json> plain_value(const io::TomlFile& file, const std::string& path) {
-  for (const io::TomlText& text : file.texts()) {
-    for (io::TomlValue& value : io::toml_values(text.content, text.path.string())) {
-      if (value.key == path) return std::move(value.value);
-    }
-  }
-  return std::nullopt;
-}
-
 void read_values(io::TomlFile& file, const std::string& path, Variation& out) {
-  if (!file.has(path)) return;
-  file.skip(path);
-  std::optional<io::Json> values = plain_value(file, path);
-  if (values && !values->is_array()) values = io::Json::array({*values});
-  if (!values || std::ranges::any_of(*values, &io::Json::is_array))
-    throw file.reject(path, "must be numbers, texts, true or false");
-  if (values->empty()) throw file.reject(path, "must not be empty");
-  for (const io::Json& value : *values) out.values.push_back({literal_of(value)});
+  std::vector<std::string> values;
+  if (!file.literals(path, values)) return;
+  if (values.empty()) throw file.reject(path, "must not be empty");
+  for (std::string& value : values) out.values.push_back({std::move(value)});
 }
 
 void read_table(io::TomlFile& file, const std::string& path, Variation& out) {
@@ -120,16 +99,29 @@ void add_file(const std::filesystem::path& file, Digest& digest) {
     digest.text(io::read_file(named));
 }
 
-/// Files that the values of keys name: their paths are relative to the base document.
+/// The file that a text names, if it names one.
+void add_file_of(const std::string& text, const std::filesystem::path& folder, Digest& digest) {
+  std::error_code ignored;
+  if (text.empty() || text.size() > longest_file_name) return;
+  if (std::filesystem::is_regular_file(folder / text, ignored)) add_file(folder / text, digest);
+}
+
+void add_files_of(const io::Json& value, const std::filesystem::path& folder, Digest& digest) {
+  if (value.is_string()) add_file_of(value.get<std::string>(), folder, digest);
+  if (!value.is_array()) return;
+  for (const io::Json& one : value) add_files_of(one, folder, digest);
+}
+
+/// Files that the values of keys name, also in lists: their paths are relative to the base document.
 void add_files_of_values(const Study& study, Digest& digest) {
   const std::filesystem::path folder = study.base.parent_path();
-  std::error_code ignored;
   for (const Variation& one : study.vary) {
     for (const std::vector<std::string>& row : one.values) {
       for (const std::string& literal : row) {
-        const std::string text = io::toml_unquoted(literal);
-        if (text == literal || text.empty() || text.size() > longest_file_name) continue;
-        if (std::filesystem::is_regular_file(folder / text, ignored)) add_file(folder / text, digest);
+        if (literal.starts_with('"')) add_file_of(io::toml_unquoted(literal), folder, digest);
+        if (!is_list(literal)) continue;
+        for (const io::TomlValue& list : io::toml_values("value = " + literal, study.file.string()))
+          add_files_of(list.value, folder, digest);
       }
     }
   }
@@ -163,9 +155,11 @@ const io::Schema<Variation>& vary_table() {
              std::string text;
              if (file.text(path, text)) out.keys = {std::move(text)};
            }),
-       declared<Variation>("values", Holds::number, "numbers, texts, true or false, one after the other", 1)
+       declared<Variation>("values", Holds::number,
+                           "numbers, texts, true or false, or lists of them, one after the other", 1)
            .or_also(Holds::text)
            .or_also(Holds::boolean)
+           .or_also(Holds::list)
            .or_one()
            .read_by(read_values),
        key("range", &Variation::range, "or from, to, in the key's unit").no_default().entries(2),

@@ -42,8 +42,15 @@ void for_each_point(const DoneStudy& study,
   }
 }
 
+/// Of a value that a key is set to: texts without their quotes, but in a column with lists, where all stand as TOML
+/// writes them.
+std::string cell_text(const std::string& value, bool with_lists) {
+  return with_lists ? value : io::toml_unquoted(value);
+}
+
 void write_csv(const std::filesystem::path& path, const DoneStudy& study) {
   const SweepPlan& plan = study.plans.front();
+  const std::vector<bool> with_lists = study.points.with_lists();
   io::LineFile out(path);
   std::string line;
   for (const std::vector<std::string>* names : {&plan.keys, &plan.collect}) {
@@ -52,8 +59,9 @@ void write_csv(const std::filesystem::path& path, const DoneStudy& study) {
   out.write(line + "state\n");
   for_each_point(study, [&](const std::vector<std::string>& values, const PointOutcome& point) {
     line.clear();
-    for (const std::string& value : values)
-      line += (io::parse_number(value) ? value : io::csv_text(io::toml_unquoted(value))) + ',';
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      line += (io::parse_number(values[k]) ? values[k] : io::csv_text(cell_text(values[k], with_lists[k]))) + ',';
+    }
     for (const double value : point.values) line += std::isnan(value) ? "," : fmt::format("{},", value);
     line.append(name_in(point_state_names, point.state)) += '\n';
     out.write(line);
@@ -61,14 +69,20 @@ void write_csv(const std::filesystem::path& path, const DoneStudy& study) {
   out.close();
 }
 
-/// Which keys have a value that is no number, and the longest text of each; 0: numbers alone.
+/// The longest text of each key's values, where one of them is no number; 0: numbers alone.
 std::vector<std::size_t> longest_texts(const StudyPoints& points) {
-  std::vector<std::size_t> out(points.keys().size(), 0);
+  const std::vector<bool> with_lists = points.with_lists();
+  std::vector<std::size_t> out(points.keys().size(), 1);
+  std::vector<bool> numbers(out.size(), true);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::vector<std::string> values = points.values(i);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!io::parse_number(values[k])) out[k] = std::max(out[k], io::toml_unquoted(values[k]).size());
+      if (numbers[k]) numbers[k] = io::parse_number(values[k]).has_value();
+      out[k] = std::max(out[k], cell_text(values[k], with_lists[k]).size());
     }
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (numbers[k]) out[k] = 0;
   }
   return out;
 }
@@ -80,6 +94,7 @@ void write_hdf5(const std::filesystem::path& path, const DoneStudy& study) {
   table.attribute("document", sweep_plan_table().info().document());
   table.attribute("fingerprint", plan.fingerprint);
   const std::vector<std::size_t> longest = longest_texts(study.points);
+  const std::vector<bool> with_lists = study.points.with_lists();
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     table.column(plan.keys[k], io::unit_of_key(plan.keys[k]), longest[k] > 0 ? Kind::text : Kind::real, longest[k]);
   }
@@ -88,7 +103,7 @@ void write_hdf5(const std::filesystem::path& path, const DoneStudy& study) {
   for_each_point(study, [&](const std::vector<std::string>& values, const PointOutcome& point) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (longest[k] > 0)
-        table.put(io::toml_unquoted(values[k]));
+        table.put(cell_text(values[k], with_lists[k]));
       else
         table.put(*io::parse_number(values[k]));
     }
@@ -131,14 +146,14 @@ bool is_csv(const std::filesystem::path& path) {
   throw InvalidInput(path.string(), "must end in .h5, .hdf5 or .csv");
 }
 
-/// Texts as TOML writes them, as numbers where all are.
-void set_numbers(StudyColumn& column) {
+/// Values as TOML writes them, as numbers where all are; else as they stand in results.csv.
+void set_numbers(StudyColumn& column, bool with_lists) {
   const auto is_number = [](const std::string& text) { return io::parse_number(text).has_value(); };
   if (std::ranges::all_of(column.texts, is_number)) {
     for (const std::string& text : column.texts) column.numbers.push_back(*io::parse_number(text));
     column.texts.clear();
   }
-  for (std::string& text : column.texts) text = io::toml_unquoted(text);
+  for (std::string& text : column.texts) text = cell_text(text, with_lists);
 }
 
 template <class Unit>
@@ -191,7 +206,8 @@ ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary) {
       }
     }
   }
-  std::ranges::for_each(out.keys, set_numbers);
+  const std::vector<bool> with_lists = study.points.with_lists();
+  for (std::size_t k = 0; k < out.keys.size(); ++k) set_numbers(out.keys[k], with_lists[k]);
   if (boundary == nullptr) return out;
   out.boundary_points = static_cast<std::uint64_t>(boundary->points.rows());
   out.boundary_keys = columns_named(first.keys, io::unit_of_key);

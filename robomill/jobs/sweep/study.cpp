@@ -273,6 +273,16 @@ std::vector<std::string> StudyPoints::values(std::size_t point) const {
   return out;
 }
 
+std::vector<bool> StudyPoints::with_lists() const {
+  std::vector<bool> out(keys_.size());
+  for (const Axis& axis : axes_) {
+    for (std::size_t k = 0; k < axis.places.size(); ++k) {
+      out[axis.places[k]] = std::ranges::any_of(axis.rows, [k](const auto& row) { return is_list(row[k]); });
+    }
+  }
+  return out;
+}
+
 std::vector<io::TomlSetting> StudyPoints::settings(std::size_t point) const {
   std::vector<std::string> texts = values(point);
   std::vector<io::TomlSetting> out;

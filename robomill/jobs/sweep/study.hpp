@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -99,6 +100,11 @@ struct ROBOMILL_API Study {
   void validate() const;
 };
 
+/// Whether a value as TOML writes it is a list.
+[[nodiscard]] inline bool is_list(std::string_view value) {
+  return value.starts_with('[');
+}
+
 /// The points of a study: every value of each grid, list and table with every sample. Keys that are sampled in one way
 /// are sampled together and have one count. The last of the varied keys changes fastest; samples of both kinds stand
 /// where the first of their kind stands.
@@ -117,6 +123,8 @@ class ROBOMILL_API StudyPoints {
   /// What they are set to at a point, in that order, as TOML writes it.
   [[nodiscard]] std::vector<std::string> values(std::size_t point) const;
   [[nodiscard]] std::vector<io::TomlSetting> settings(std::size_t point) const;
+  /// Of each key, in that order, whether one of its values is a list.
+  [[nodiscard]] std::vector<bool> with_lists() const;
 
   // The same points as combinations of the values that are not sampled, each with all samples.
   [[nodiscard]] std::size_t combinations() const { return combinations_; }
