@@ -24,6 +24,7 @@ describe('names', () => {
   it('of rows say where they are', () => {
     expect(rowName({ value: 'limit@8000', at: { 'cut.direction': '"up"', 'tool.teeth': '2' } })).toBe('limit@8000 at cut.direction = up, tool.teeth = 2');
     expect(rowName({ value: 'limit@8000', at: {} })).toBe('limit@8000');
+    expect(rowName({ value: 'a', at: { 'tool.pitch_deg': '[100, 120, 140]', b: '["x", "y"]', c: '"[1]"' } })).toBe('a at tool.pitch_deg = [100, 120, 140], b = ["x", "y"], c = "[1]"');
   });
 });
 
@@ -43,6 +44,15 @@ describe('probabilities', () => {
     expect(conditionText({ ...result, rows: [{ ...result.rows[0]!, value: 'limit@8000' }] }, points)).toBe('at least 3 mm');
     expect(conditionText({ ...result, at_least: null, at_most: 2 }, null)).toBe('at most 2');
     expect(valueText(1, 'abs_mu@8000,1', { ...points, values: [{ ...points.values[0]!, name: 'abs_mu@8000,1', unit: '1' }] })).toBe('1');
+  });
+  it('tell values apart that are shown alike', () => {
+    const [row] = result.rows;
+    const settings = ['[1, 2]', '"[1, 2]"', '2', '"2"', '[2, 1]'];
+    const rows = settings.map((value) => ({ ...row!, at: { key: value } }));
+    const lists = probabilityMap({ ...result, rows, optimum: rows[3]! });
+    expect(lists.combinations).toEqual(['[1, 2]', '"[1, 2]"', '2', '2', '[2, 1]']);
+    expect(lists.rows).toEqual(rows.map((one) => [one]));
+    expect(lists.optimum).toEqual([0, 3]);
   });
   it('are a map with the optimum outlined', () => {
     const { data, layout } = probabilityFigure(map, light, false);
@@ -90,6 +100,16 @@ describe('points', () => {
     expect((over.data[0]!['x'] as string[]).slice(0, 2)).toEqual(['down', 'up']);
     expect(over.layout['xaxis']).toMatchObject({ type: 'category' });
     expect(over.layout['yaxis']).toMatchObject({ title: { text: 'limit@8000 (mm)' } });
+  });
+  it('stand over lists in full, which the axis shortens', () => {
+    const long = `[${Array.from({ length: 40 }, (_, i) => i).join(', ')}]`;
+    const key = { ...points.keys[1]!, texts: [long, '[6000, 12000]', '["<b>"]', long] };
+    const { data, layout } = columnsFigure(key, points.values[0]!, null, light);
+    expect(data[0]!['x']).toEqual([long, '[6000, 12000]', '["&lt;b&gt;"]', long]);
+    expect(data[0]!['customdata']).toEqual([long, '[6000, 12000]', '["&lt;b&gt;"]', long]);
+    expect(data[0]!['hovertemplate']).toContain('cut.direction: %{customdata}<br>');
+    expect(columnsFigure(points.keys[0]!, points.values[0]!, null, light).data[0]!['hovertemplate']).toContain(': %{x}<br>');
+    expect(layout['xaxis']).toMatchObject({ type: 'category', tickvals: [long, '[6000, 12000]', '["&lt;b&gt;"]'], ticktext: [`${long.slice(0, 23)}…`, '[6000, 12000]', '["&lt;b&gt;"]'] });
   });
   it('of a boundary have the third key as colour', () => {
     const [a, b, c] = points.boundary_keys;

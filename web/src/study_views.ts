@@ -20,8 +20,9 @@ export function shortNames(names: string[]): string[] {
   });
 }
 
+/** A text without its quotes, unless it would be read as a list; any other value as TOML writes it. */
 function unquoted(value: string): string {
-  return value.replace(/^"(.*)"$/, '$1');
+  return value.replace(/^"(?!\[)(.*)"$/, '$1');
 }
 
 /** "tool.teeth = 2, cut.radial_depth_mm = 6"; empty of none. */
@@ -65,16 +66,24 @@ export function probabilityMap({ rows, optimum }: ProbabilityResult): Probabilit
   const all = Object.keys(rows[0]?.at ?? {});
   const keys = all.filter((key) => rows.some(({ at }) => at[key] !== rows[0]!.at[key]));
   const fixed = rows.length === 0 ? '' : settledText(rows[0]!.at, all.filter((key) => !keys.includes(key)));
-  const nameOf = ({ at }: ProbabilityRow) => keys.map((key) => unquoted(at[key] ?? '')).join(', ');
-  const places = new Map<string, (ProbabilityRow | null)[]>();
+  const settings = ({ at }: ProbabilityRow) => keys.map((key) => at[key] ?? '');
+  const placeOf = (row: ProbabilityRow) => settings(row).join(', '); // in quotes: the text "2" is not the number 2
+  const places = new Map<string, { name: string; cells: (ProbabilityRow | null)[] }>();
   for (const row of rows) {
-    const name = nameOf(row);
-    if (!places.has(name)) places.set(name, values.map(() => null));
-    places.get(name)![values.indexOf(row.value)] = row;
+    const place = placeOf(row);
+    if (!places.has(place)) places.set(place, { name: settings(row).map(unquoted).join(', '), cells: values.map(() => null) });
+    places.get(place)!.cells[values.indexOf(row.value)] = row;
   }
-  const combinations = [...places.keys()];
+  const combinations = [...places.values()];
   const best = optimum ?? null;
-  return { values, keys, fixed, combinations, rows: [...places.values()], optimum: best && [values.indexOf(best.value), combinations.indexOf(nameOf(best))] };
+  return {
+    values,
+    keys,
+    fixed,
+    combinations: combinations.map(({ name }) => name),
+    rows: combinations.map(({ cells }) => cells),
+    optimum: best && [values.indexOf(best.value), [...places.keys()].indexOf(placeOf(best))],
+  };
 }
 
 /** "3 mm" of a value that is collected; without a unit where that is not known. */

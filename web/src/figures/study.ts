@@ -4,6 +4,7 @@ import { axis, barBelow, diverging, layout, plain, points, type Figure, type Lay
 
 const most_texts = 24; // rows of a map whose cells have texts
 const longest = 40; // of an axis title
+const longest_text = 200; // of a value under the pointer
 const room_below = 130; // for a scale of colours
 
 /** A scale of colours below the axis of a plot that is so high. */
@@ -15,10 +16,15 @@ function shortened(text: string, longest: number): string {
   return plain(text.length > longest ? `${text.slice(0, longest - 1)}…` : text);
 }
 
+/** Of many names some, evenly chosen. */
+function some(names: string[]): number[] {
+  const step = Math.max(1, Math.ceil(names.length / 40));
+  return names.map((_, i) => i).filter((i) => i % step === 0);
+}
+
 /** Categories at 0, 1, … of an axis; where there are many, some of them. */
 function categories(names: string[], longest: number): Layout {
-  const step = Math.max(1, Math.ceil(names.length / 40));
-  const places = names.map((_, i) => i).filter((i) => i % step === 0);
+  const places = some(names);
   return { tickvals: places, ticktext: places.map((i) => shortened(names[i]!, longest)), showgrid: false, zeroline: false };
 }
 
@@ -98,8 +104,12 @@ function valuesOf({ numbers, texts }: StudyColumn): unknown[] {
   return texts.length > 0 ? texts.map(plain) : numbers;
 }
 
+/** Of texts each is a category, in their order; lists may be long. */
 function columnAxis(column: StudyColumn, theme: Theme): Layout {
-  return axis(theme, shortened(columnTitle(column), longest), column.texts.length > 0 ? { type: 'category' } : { exponentformat: 'none' });
+  const names = [...new Set(column.texts)];
+  const shown = some(names).map((i) => names[i]!);
+  const ticks = { type: 'category', tickvals: shown.map(plain), ticktext: shown.map((name) => shortened(name, 24)) };
+  return axis(theme, shortened(columnTitle(column), longest), names.length > 0 ? ticks : { exponentformat: 'none' });
 }
 
 /** A column over another one, a third one as colour. */
@@ -107,9 +117,11 @@ export function columnsFigure(across: StudyColumn, up: StudyColumn, colour: Stud
   const height = colour ? 540 : 420;
   const bar = colour && scaleBelow(shortened(columnTitle(colour), longest), height, { exponentformat: 'none' });
   const coloured = colour && { color: colour.numbers, colorscale: theme.scale, colorbar: bar, showscale: true };
-  const hover = `${shortened(across.name, 60)}: %{x}<br>${shortened(up.name, 60)}: %{y}${colour ? `<br>${shortened(colour.name, 60)}: %{marker.color}` : ''}`;
+  const texts = across.texts.length > 0; // under the pointer longer than at the axis
+  const hover = `${shortened(across.name, 60)}: %{${texts ? 'customdata' : 'x'}}<br>${shortened(up.name, 60)}: %{y}${colour ? `<br>${shortened(colour.name, 60)}: %{marker.color}` : ''}`;
+  const more = { showlegend: false, ...(texts ? { customdata: across.texts.map((text) => shortened(text, longest_text)) } : {}) };
   return {
-    data: [points(plain(up.name), valuesOf(across), valuesOf(up), { size: 6, color: theme.accent, opacity: colour ? 1 : 0.55, ...coloured }, hover, { showlegend: false })],
+    data: [points(plain(up.name), valuesOf(across), valuesOf(up), { size: 6, color: theme.accent, opacity: colour ? 1 : 0.55, ...coloured }, hover, more)],
     layout: layout(theme, height, {
       margin: { l: 56, r: 36, t: 16, b: colour ? room_below : 48 },
       hovermode: 'closest',
