@@ -9,7 +9,8 @@
 namespace robomill::io {
 namespace {
 
-constexpr hsize_t chunk_rows = 16384;
+constexpr std::size_t most_chunk_rows = 16384;
+constexpr std::size_t most_chunk_bytes = std::size_t{4} << 20;  // of texts: the library holds a chunk in memory
 constexpr unsigned compression = 1;  // of 9: three times as fast as the usual 6, and hardly larger
 
 Hdf5Id text_type(std::size_t bytes) {
@@ -28,8 +29,7 @@ Hdf5Table::Hdf5Table(const std::filesystem::path& path) : path_(path), pending_(
 void Hdf5Table::restart() {
   close();
   require(file_.reset());
-  next_ = waiting_rows_ = 0;
-  rows_ = 0;
+  next_ = 0;
   file_ = Hdf5Id(create_hdf5(pending_), H5Fclose);
   require(file_.good());
 }
@@ -38,18 +38,21 @@ std::size_t Hdf5Table::column(const std::string& name, const std::string& unit, 
   const hsize_t none = 0;
   const hsize_t unlimited = H5S_UNLIMITED;
   const Hdf5Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-  const Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  require(H5Pset_chunk(layout.get(), 1, &chunk_rows) >= 0 && H5Pset_shuffle(layout.get()) >= 0 &&
-          H5Pset_deflate(layout.get(), compression) >= 0 &&
-          H5Pset_obj_track_times(layout.get(), false) >= 0);  // the same rows, the same bytes
   Column column;
+  column.chunk_rows = most_chunk_rows;
   if (kind == Kind::text) {
     column.longest = std::max<std::size_t>(longest, 1);
+    column.chunk_rows = std::clamp<std::size_t>(most_chunk_bytes / column.longest, 1, most_chunk_rows);
     column.type = text_type(column.longest);
   } else {
     column.type = Hdf5Id(H5Tcopy(kind == Kind::whole ? H5T_STD_I64LE : H5T_IEEE_F64LE), H5Tclose);
-    column.waiting.reserve(chunk_rows);
+    column.waiting.reserve(column.chunk_rows);
   }
+  const hsize_t rows = column.chunk_rows;
+  const Hdf5Id layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  require(H5Pset_chunk(layout.get(), 1, &rows) >= 0 && H5Pset_shuffle(layout.get()) >= 0 &&
+          H5Pset_deflate(layout.get(), compression) >= 0 &&
+          H5Pset_obj_track_times(layout.get(), false) >= 0);  // the same rows, the same bytes
   column.set = Hdf5Id(
       H5Dcreate2(file_.get(), name.c_str(), column.type.get(), space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT),
       H5Dclose);
@@ -61,17 +64,14 @@ std::size_t Hdf5Table::column(const std::string& name, const std::string& unit, 
 
 void Hdf5Table::put(std::string_view text) {
   Column& column = columns_[next_++];
+  const std::size_t rows = column.waiting_text.size() / column.longest + 1;
   column.waiting_text += text.substr(0, column.longest);
-  column.waiting_text.resize((waiting_rows_ + 1) * column.longest, '\0');
-}
-
-void Hdf5Table::end_row() {
-  next_ = 0;
-  if (++waiting_rows_ == chunk_rows) flush();
+  column.waiting_text.resize(rows * column.longest, '\0');
+  if (rows == column.chunk_rows) flush(column);
 }
 
 PendingFile& Hdf5Table::finish() {
-  flush();
+  for (Column& column : columns_) flush(column);
   close();
   require(file_.reset());
   pending_.prepare();
@@ -103,24 +103,21 @@ void Hdf5Table::attribute_of(hid_t owner, const char* name, const std::string& v
   require(H5Awrite(attribute.get(), type.get(), value.c_str()) >= 0);
 }
 
-void Hdf5Table::flush() {
-  const hsize_t count = waiting_rows_;
+void Hdf5Table::flush(Column& column) {
+  const bool texts = column.longest > 0;
+  const hsize_t count = texts ? column.waiting_text.size() / column.longest : column.waiting.size();
   if (count == 0) return;
-  const hsize_t all = rows_ + count;
+  const hsize_t all = column.rows + count;
   const Hdf5Id memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  for (Column& column : columns_) {
-    require(H5Dset_extent(column.set.get(), &all) >= 0);
-    const Hdf5Id space(H5Dget_space(column.set.get()), H5Sclose);
-    require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &rows_, nullptr, &count, nullptr) >= 0);
-    const hid_t type = column.longest > 0 ? column.type.get() : H5T_NATIVE_DOUBLE;
-    const void* const values =
-        column.longest > 0 ? static_cast<const void*>(column.waiting_text.data()) : column.waiting.data();
-    require(H5Dwrite(column.set.get(), type, memory.get(), space.get(), H5P_DEFAULT, values) >= 0);
-    column.waiting.clear();
-    column.waiting_text.clear();
-  }
-  rows_ = all;
-  waiting_rows_ = 0;
+  require(H5Dset_extent(column.set.get(), &all) >= 0);
+  const Hdf5Id space(H5Dget_space(column.set.get()), H5Sclose);
+  require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &column.rows, nullptr, &count, nullptr) >= 0);
+  const hid_t type = texts ? column.type.get() : H5T_NATIVE_DOUBLE;
+  const void* const values = texts ? static_cast<const void*>(column.waiting_text.data()) : column.waiting.data();
+  require(H5Dwrite(column.set.get(), type, memory.get(), space.get(), H5P_DEFAULT, values) >= 0);
+  column.waiting.clear();
+  column.waiting_text.clear();
+  column.rows = all;
 }
 
 }  // namespace robomill::io

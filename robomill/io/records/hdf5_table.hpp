@@ -40,10 +40,14 @@ class Hdf5Table {
   }
 
   // The next values of a row, in the order of the columns.
-  void put(double value) { columns_[next_++].waiting.push_back(value); }
+  void put(double value) {
+    Column& column = columns_[next_++];
+    column.waiting.push_back(value);
+    if (column.waiting.size() == column.chunk_rows) flush(column);
+  }
   void put(std::string_view text);
   /// Ends the row.
-  void end_row();
+  void end_row() { next_ = 0; }
 
   /// The whole file under its temporary name, durable; commit() moves it to its place. Nothing is put afterwards.
   [[nodiscard]] PendingFile& finish();
@@ -52,6 +56,8 @@ class Hdf5Table {
   struct Column {
     Hdf5Id type = {}, set = {};
     std::size_t longest = 0;           ///< of a text; 0: numbers
+    std::size_t chunk_rows = 0;        ///< that are written together
+    hsize_t rows = 0;                  ///< that are written
     std::vector<double> waiting = {};  ///< numbers that are not yet written …
     std::string waiting_text = {};     ///< … or texts, filled up to their length
   };
@@ -59,14 +65,13 @@ class Hdf5Table {
   void attribute_of(hid_t owner, const char* name, double value);
   void require(bool good);
   void close();
-  void flush();
+  void flush(Column& column);
 
   std::filesystem::path path_;
   PendingFile pending_;
   Hdf5Id file_ = {};
   std::vector<Column> columns_ = {};
-  std::size_t next_ = 0, waiting_rows_ = 0;
-  hsize_t rows_ = 0;
+  std::size_t next_ = 0;
 };
 
 }  // namespace robomill::io

@@ -51,7 +51,8 @@ class StudyLists : public ::testing::Test {
   StudyLists() { folder_.file("lobes.toml", study_cut()); }
   void study(const std::string& tables, const std::string& collect = "limit@8000",
              const std::string& base = "lobes.toml") {
-    folder_.file("study.toml", "[study]\njob = \"lobes\"\nbase = \"" + base + "\"\ncollect = \"" + collect + "\"\n" + tables);
+    folder_.file("study.toml",
+                 "[study]\njob = \"lobes\"\nbase = \"" + base + "\"\ncollect = \"" + collect + "\"\n" + tables);
   }
   SweepResult run(const std::string& into, int shard = 1, int shards = 1) {
     return run_sweep({.study = folder_.at("study.toml"), .folder = folder_.at(into), .shard = shard, .shards = shards});
@@ -176,6 +177,24 @@ table = "cells.csv"
   EXPECT_EQ(cells(3), Strings(32, "[0.1, 0.2]")) << "a cell is a plain value: a text";
 }
 
+// A column's memory is bounded, however long its texts are: 16,384 of these are 5 GB.
+TEST_F(StudyLists, MayBeLong) {
+  std::string values;
+  for (const char* first : {"0", "1"}) {
+    values += values.empty() ? "[[" : ", [";
+    values += first;
+    for (int i = 1; i < 50'000; ++i) values += ", " + std::to_string(i);
+    values += "]";
+  }
+  study("[[vary]]\nkey = \"tool.pitch_deg\"\nvalues = " + values +
+        "]\n[[vary]]\nkey = \"tool.teeth\"\nrange = [1, 8]\ncount = 8\n");
+  EXPECT_EQ(run("out").rejected, 16U);
+  const Strings written = cells(0);
+  ASSERT_EQ(written.size(), 16U);
+  EXPECT_EQ("[" + written.front() + ", " + written.back() + "]", values + "]");
+  EXPECT_EQ(hdf5_texts(folder_.at("out/results.h5"), "tool.pitch_deg"), written);
+}
+
 // Files that a list names count with what is in them. Their paths are relative to the document.
 TEST_F(StudyLists, CountTheFilesThatTheyName) {
   std::filesystem::create_directory(folder_.at("cuts"));
@@ -200,8 +219,7 @@ TEST_F(StudyLists, CountTheFilesThatTheyName) {
 // Combinations with a list have probabilities and indices of their own; the page has its values as texts.
 TEST_F(StudyLists, AreCombinedWithSamples) {
   const std::string lists = "[[vary]]\nkey = \"tool.pitch_deg\"\nvalues = [[180, 180], [150, 210]]\n";
-  const std::string sampled =
-      "[[vary]]\nkey = \"cut.radial_depth_mm\"\nrange = [2, 8]\nsampling = \"sobol\"\n";
+  const std::string sampled = "[[vary]]\nkey = \"cut.radial_depth_mm\"\nrange = [2, 8]\nsampling = \"sobol\"\n";
   folder_.file("lobes.toml", cut_with_pitch("[180, 180]"));
   const auto page_of = [&](const std::string& tables) {
     study(tables, "abs_mu@8000,1");
