@@ -1,4 +1,6 @@
 """Studies: by the verb, and as tasks of a Dask cluster; the bytes are the same."""
+import csv
+import json
 import os
 import pathlib
 import random
@@ -62,6 +64,22 @@ def test_sweep_gives_what_the_program_gives(study, tmp_path):
     for name in TABLES:
         robomill.sweep(study, tmp_path / "shards", merge=tmp_path / "shards" / name)
     assert tables(tmp_path / "shards") == tables(tmp_path / "theirs")
+
+
+def test_a_list_is_a_value(study, tmp_path):
+    head = STUDY.split("[[vary]]")[0] + '[[vary]]\nkey = "tool.pitch_deg"\n'
+    study.write_text(head + "values = [[180, 180], [150, 210]]\n")
+    robomill.sweep(study, tmp_path / "out")
+    with (tmp_path / "out" / "results.csv").open(newline="") as table:
+        rows = list(csv.DictReader(table))
+    assert [json.loads(row["tool.pitch_deg"]) for row in rows] == [[180, 180], [150, 210]]
+    assert [row["state"] for row in rows] == ["done", "done"]
+    study.write_text(head + "values = [[180, 180],\n[150, { a = 1 }]]\n")
+    with pytest.raises(robomill.InvalidInput, match=r"study.toml:10: vary\[1\].values\[2\]\[2\]: must be"):
+        robomill.sweep(study, tmp_path / "other")
+    study.write_text(head + "range = [[180, 180], [150, 210]]\ncount = 2\n")
+    with pytest.raises(robomill.InvalidInput, match=r"vary\[1\].range: must be a list of finite numbers"):
+        robomill.sweep(study, tmp_path / "other")
 
 
 def test_a_cluster_gives_the_same_bytes(study, tmp_path, cluster):
