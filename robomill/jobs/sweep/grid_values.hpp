@@ -29,13 +29,13 @@ class GridValues {
   /// Along how many axes a point lies between those of the grid with steps of 2 `step`.
   [[nodiscard]] std::size_t axes_between(std::uint64_t point, std::uint64_t step) const;
 
-  /// From points one and three steps away, along each of the axes on which the point lies between those of the grid with
-  /// steps of 2 `step`: the cubic through four values, or the parabola through three where a far one is not known. Its
-  /// error is the larger of the second differences |f(-3) - 2 f(-1) + f(1)| and |f(-1) - 2 f(1) + f(3)|, plus the errors
-  /// of the four, times their weights. Of several axes that with the least error counts.
+  /// From points one and three steps away, along each of the axes on which the point lies between those of the grid
+  /// with steps of 2 `step`: the cubic through four values, or the parabola through three where a far one is not known.
+  /// Its error is the larger of the second differences |f(-3) - 2 f(-1) + f(1)| and |f(-1) - 2 f(1) + f(3)|, plus the
+  /// errors of the four, times their weights. Of several axes that with the least error counts.
   ///
-  /// The second difference is 8 times the error of linear interpolation of a parabola, 8/3 times that of the cubic where
-  /// f has a kink in the middle, and twice that where it has a step.
+  /// The second difference is 8 times the error of linear interpolation of a parabola, 8/3 times that of the cubic
+  /// where f has a kink in the middle, and twice that where it has a step.
   /// @returns none where too few points are known, or not finite, along each axis
   [[nodiscard]] std::optional<GridValue> interpolated(std::uint64_t point, std::uint64_t step) const;
 

@@ -50,9 +50,7 @@ TEST_F(Interpolation, HasItsErrorWithinTheEstimateAcrossKinksAndSteps) {
   for (int trial = 0; trial < 2000; ++trial) {
     const double at = random.uniform(0.0, 1.0), slope = random.uniform(-3.0, 3.0), bend = random.uniform(-9.0, 9.0);
     const bool jumps = trial % 2 == 1;
-    const Function f = [&](double x, double) {
-      return slope * x + (x < at ? 0.0 : jumps ? bend : bend * (x - at));
-    };
+    const Function f = [&](double x, double) { return slope * x + (x < at ? 0.0 : jumps ? bend : bend * (x - at)); };
     fill(f);
     for (const std::uint64_t i : {3U, 5U}) {
       const GridValue found = known_.interpolated(point(i, 2), 1).value();
