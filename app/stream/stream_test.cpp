@@ -97,12 +97,17 @@ TEST_F(StreamVerb, WritesAFileThatAppearsWhole) {
 }
 
 TEST_F(StreamVerb, TakesCommandsFromAPipe) {
-  const Ended run = shell(
-      "{ echo override 0.5; sleep 0.5; echo hold; sleep 0.4; echo nonsense; head -c 5000 /dev/urandom | tr '\\n' x; "
-      "echo; echo resume; sleep 0.6; echo stop; } | '" ROBOMILL_PROGRAM
-      "' smooth long.ngc --cell cell.toml --stream --report r.json");
+  // Each command waits for the state that the one before leads to.
+  write(
+      "commands.sh",
+      "is_in() { i=0; until tail -n 2 s.jsonl 2>/dev/null | grep -q \"\\\"$1\\\"\" || [ $i -ge 1500 ]; do sleep 0.02; "
+      "i=$((i + 1)); done; }\n"
+      "echo override 0.5; is_in running; echo hold; is_in holding; echo nonsense\n"
+      "head -c 5000 /dev/urandom | tr '\\n' x; echo; echo resume; is_in running; echo stop\n");
+  const Ended run = shell("sh commands.sh | '" ROBOMILL_PROGRAM
+                          "' smooth long.ngc --cell cell.toml --stream --report r.json > s.jsonl");
   EXPECT_EQ(run.exit, 0) << run.err;
-  const std::vector<json> lines = lines_of(run.out);
+  const std::vector<json> lines = lines_of(slurp(folder_.at("s.jsonl")));
   const json report = json::parse(slurp(folder_.at("r.json")));
   EXPECT_EQ(report["end"], "stopped");
   EXPECT_EQ(report["commands"], 4);
