@@ -360,8 +360,15 @@ const Row* TomlFile::State::row_of(const InvalidInput::Parts& parts) const {
 
 InvalidInput TomlFile::located(const InvalidInput& error) const {
   InvalidInput::Parts parts = error.parts();
-  const Row* row = parts.where.empty() && !parts.field.empty() ? state_->row_of(parts) : nullptr;
-  if (row == nullptr) return error;
+  if (!parts.where.empty() || parts.field.empty()) return error;
+  const Row* row = state_->row_of(parts);
+  if (row == nullptr) {  // of a table as a whole
+    const toml::node* table = find_node(state_->root, parts.field);
+    if (table == nullptr) return error;
+    parts.where = state_->where(table);
+    parts.field = shown_key(parts.field);
+    return InvalidInput(std::move(parts));
+  }
   if (!row->present) {
     if (const std::string other = state_->written_for(row->key); !other.empty()) return state_->unknown(other);
   }

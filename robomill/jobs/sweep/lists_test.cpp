@@ -141,7 +141,7 @@ TEST_F(StudyLists, RejectListsWhereTheyHaveNoMeaning) {
   says("[[vary]]\nkey = \"lobes.spindle_speed_rpm\"\nrange = [[4000, 12000], [6000, 16000]]\ncount = 3\n",
        "study.toml:7: vary[1].range: must be a list of finite numbers");
   says("[boundary]\nvalue = \"abs_mu@8000,1\"\n[[vary]]\nkey = \"tool.pitch_deg\"\nvalues = [[180, 180], [150, 210]]\n",
-       "vary[0]: must be a range on a grid");
+       "study.toml:7: vary[1]: must be a range on a grid");
 }
 
 // A column with a list has every value as TOML writes it, so that a text "[1]" is no list; another has texts bare.
