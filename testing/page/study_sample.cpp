@@ -75,7 +75,7 @@ std::string sample_statistics(const std::string& text) {
                          {"evaluations", 2371},
                          {"interpolated", 1822},
                          {"compared", 940},
-                         {"outside", 3},
+                         {"beyond_error", 3},
                          {"grid_points", 35937.0},
                          {"unknown", 4},
                          {"lost_cubes", 1},

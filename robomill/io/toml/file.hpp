@@ -99,8 +99,8 @@ class TomlFile {
 
   /// The error for a key of this file: file:line: key = value unit; rule. hint
   [[nodiscard]] InvalidInput reject(std::string_view key, std::string rule, std::string hint = {}) const;
-  /// An error about an SI member reported in the words of this file (key, value in the file's unit, line; of a key that
-  /// is missing the line of its table); unchanged where the member did not come from here.
+  /// An error about an SI member, or a table as a whole, reported in the words of this file (key, value in the file's
+  /// unit, line; of a key that is missing the line of its table); unchanged where the member did not come from here.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const;
   /// Calls f; an InvalidInput that it throws comes out located.
   template <class F>

@@ -81,4 +81,10 @@ std::vector<fs::path> files_named_in(const fs::path& document, Unreadable unread
   return std::move(found.files);
 }
 
+std::vector<fs::path> files_named_by(const std::vector<io::TomlValue>& values, const fs::path& folder) {
+  Found found;
+  for (const io::TomlValue& value : values) add_files(value.value, folder, found);
+  return std::move(found.files);
+}
+
 }  // namespace robomill::jobs

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "robomill/io/toml/values.hpp"
+
 // Method: robomill/jobs/README.md, "Files"
 
 namespace robomill::jobs {
@@ -21,5 +23,10 @@ enum class Unreadable {
 /// @throws InvalidInput if they are too many: 64 documents, 8 MB of them, or 10,000 files
 [[nodiscard]] std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& document,
                                                                 Unreadable unreadable = Unreadable::left_out);
+
+/// Of values, the files that their texts lead to from a folder, each once.
+/// @throws InvalidInput if they are more than 10,000
+[[nodiscard]] std::vector<std::filesystem::path> files_named_by(const std::vector<io::TomlValue>& values,
+                                                                const std::filesystem::path& folder);
 
 }  // namespace robomill::jobs

@@ -23,7 +23,7 @@ const io::Schema<BoundaryStatistics>& boundary_table() {
        key("evaluations", &BoundaryStatistics::evaluations, "points of the study"),
        key("interpolated", &BoundaryStatistics::interpolated, "further points, whose side the values around them tell"),
        key("compared", &BoundaryStatistics::compared, "evaluations at points that could be interpolated, too"),
-       key("outside", &BoundaryStatistics::outside, "of them, further from it than its estimated error"),
+       key("beyond_error", &BoundaryStatistics::beyond_error, "of them, further from it than its estimated error"),
        key("grid_points", &BoundaryStatistics::grid_points, "that a grid of these steps has"),
        key("unknown", &BoundaryStatistics::unknown, "points of the study without a value: the boundary ends there"),
        key("lost_cubes", &BoundaryStatistics::lost_cubes,

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/digest.hpp"
 #include "robomill/base/error.hpp"
@@ -25,8 +24,6 @@ namespace {
 using io::declared;
 using io::Holds;
 using io::key;
-
-constexpr std::size_t longest_file_name = 1024;
 
 /// A cell of a table, as TOML writes it.
 std::string literal_of_cell(std::string_view cell) {
@@ -98,32 +95,20 @@ void add_file(const std::filesystem::path& file, Digest& digest) {
     digest.text(io::read_file(named));
 }
 
-/// The file that a text names, if it names one.
-void add_file_of(const std::string& text, const std::filesystem::path& folder, Digest& digest) {
-  std::error_code ignored;
-  if (text.empty() || text.size() > longest_file_name) return;
-  if (std::filesystem::is_regular_file(folder / text, ignored)) add_file(folder / text, digest);
-}
-
-void add_files_of(const io::Json& value, const std::filesystem::path& folder, Digest& digest) {
-  if (value.is_string()) add_file_of(value.get<std::string>(), folder, digest);
-  if (!value.is_array()) return;
-  for (const io::Json& one : value) add_files_of(one, folder, digest);
-}
-
 /// Files that the values of keys name, also in lists: their paths are relative to the base document.
 void add_files_of_values(const Study& study, Digest& digest) {
-  const std::filesystem::path folder = study.base.parent_path();
+  std::vector<io::TomlValue> texts;
   for (const Variation& one : study.vary) {
     for (const std::vector<std::string>& row : one.values) {
       for (const std::string& literal : row) {
-        if (literal.starts_with('"')) add_file_of(io::toml_unquoted(literal), folder, digest);
-        if (!is_list(literal)) continue;
-        for (const io::TomlValue& list : io::toml_values("value = " + literal, study.file.string()))
-          add_files_of(list.value, folder, digest);
+        if (literal.starts_with('"')) texts.emplace_back().value = io::toml_unquoted(literal);
+        if (!is_list_literal(literal)) continue;
+        for (io::TomlValue& list : io::toml_values("value = " + literal, study.file.string()))
+          texts.push_back(std::move(list));
       }
     }
   }
+  for (const std::filesystem::path& named : files_named_by(texts, study.base.parent_path())) add_file(named, digest);
 }
 
 }  // namespace
@@ -178,7 +163,7 @@ const io::Schema<BoundaryTask>& boundary_task_table() {
        key("halvings", &BoundaryTask::halvings, "of the grid's steps").at_least(0.0).at_most(20.0),
        key("most_points", &BoundaryTask::most_points, "that are done or interpolated").at_least(1.0),
        key("interpolate", &BoundaryTask::interpolate,
-           "values whose side the values around them tell; false: each point is done")});
+           "points whose neighbours tell on which side of the level they lie, in place of doing them")});
   return table;
 }
 

@@ -197,7 +197,7 @@ ShownPoints shown_points_of(const DoneStudy& study, const Boundary* boundary) {
       require_chunk(study, plan, i, chunk);
       for (; next != chosen.end() && *next < end; ++next) {
         const std::vector<std::string> set = study.points.values(*next);
-        for (std::size_t k = 0; k < set.size(); ++k) out.keys[k].texts.push_back(set[k]);
+        for (std::size_t k = 0; k < set.size(); ++k) out.keys[k].texts.push_back(shown_text(set[k]));
         const std::vector<double>& values = chunk.points[*next - begin].values;
         for (std::size_t k = 0; k < values.size(); ++k) {
           out.values[k].numbers.push_back(values[k]);

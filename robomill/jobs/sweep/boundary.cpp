@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -117,10 +119,16 @@ class BoundaryTracer {
     out_.evaluations += points.size();
     for (std::size_t i = 0; i < points.size(); ++i) {
       known_.set(points[i], {.value = values[i]});
-      out_.unknown += std::isnan(values[i]) ? 1 : 0;
+      if (std::isnan(values[i])) {
+        ++out_.unknown;
+        errors_[points[i]] = std::numeric_limits<double>::infinity();
+      }
       if (!expected[i]) continue;
       ++out_.compared;
-      out_.outside += std::abs(values[i] - expected[i]->value) <= expected[i]->error ? 0 : 1;
+      const double error = std::abs(values[i] - expected[i]->value);
+      if (error <= expected[i]->error) continue;
+      ++out_.beyond_error;
+      if (!std::isnan(error)) errors_[points[i]] = error;
     }
   }
 
@@ -179,10 +187,40 @@ class BoundaryTracer {
     }
     if (!find_values(parts, corners_)) return false;
     std::erase_if(parts, [this](std::uint64_t cube) { return !changes(cube); });
-    if (!follow(std::move(parts))) return false;
+    if (!follow(std::move(parts)) || !evaluate_doubtful()) return false;
     for (const std::uint64_t cube : hidden) out_.lost_cubes += has_part(cube) ? 0 : 1;
     cubes_.assign(kept_.begin(), kept_.end());
     std::ranges::sort(cubes_);
+    return true;
+  }
+
+  /// Where a value differs by more than the error of its interpolation, or is NaN, the interpolated corners of the kept
+  /// cubes around it that so great an error could have on the wrong side are evaluated; until there are none.
+  bool evaluate_doubtful() {
+    while (!errors_.empty()) {
+      Numbers cubes(kept_.begin(), kept_.end()), doubtful;
+      for (const std::uint64_t cube : cubes) {
+        double error = 0.0;
+        for (const std::uint64_t corner : corners_) {
+          const auto found = errors_.find(cube + corner);
+          if (found != errors_.end()) error = std::max(error, found->second);
+        }
+        for (const std::uint64_t corner : corners_) {
+          const GridValue& value = known_.value(cube + corner);
+          if (value.error > 0.0 && std::abs(value.value) <= error) doubtful.push_back(cube + corner);
+        }
+      }
+      errors_.clear();
+      if (doubtful.empty()) return true;
+      sort_once(doubtful);
+      std::vector<std::optional<GridValue>> expected;
+      for (const std::uint64_t point : doubtful) expected.emplace_back(known_.value(point));
+      out_.interpolated -= doubtful.size();
+      evaluate(doubtful, expected);
+      std::erase_if(cubes, [this](std::uint64_t cube) { return !changes(cube); });
+      kept_.clear();
+      if (!follow(std::move(cubes))) return false;
+    }
     return true;
   }
 
@@ -287,6 +325,8 @@ class BoundaryTracer {
   Numbers corners_ = {}, cubes_ = {};
   std::unordered_set<std::uint64_t, GridPointHash> kept_ = {};  ///< cubes of the present halving
   GridValues known_;
+  /// Of interpolation, where they are beyond the estimate; infinite where a value is NaN.
+  std::unordered_map<std::uint64_t, double, GridPointHash> errors_ = {};
   Boundary out_ = {};
 };
 

@@ -23,7 +23,8 @@ class GridValues {
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] bool has(std::uint64_t point) const { return values_.contains(point); }
   /// Of a point that it has.
-  [[nodiscard]] double at(std::uint64_t point) const { return values_.at(point).value; }
+  [[nodiscard]] double at(std::uint64_t point) const { return value(point).value; }
+  [[nodiscard]] const GridValue& value(std::uint64_t point) const { return values_.at(point); }
   void set(std::uint64_t point, const GridValue& value) { values_[point] = value; }
 
   /// Along how many axes a point lies between those of the grid with steps of 2 `step`.
@@ -31,11 +32,12 @@ class GridValues {
 
   /// From points one and three steps away, along each of the axes on which the point lies between those of the grid
   /// with steps of 2 `step`: the cubic through four values, or the parabola through three where a far one is not known.
-  /// Its error is the larger of the second differences |f(-3) - 2 f(-1) + f(1)| and |f(-1) - 2 f(1) + f(3)|, plus the
-  /// errors of the four, times their weights. Of several axes that with the least error counts.
+  /// Its estimated error is the second difference |f(-3) - 2 f(-1) + f(1)| or |f(-1) - 2 f(1) + f(3)|, the larger of
+  /// both where both are known, plus the errors of the values times their weights, and rounding. Of several axes that
+  /// with the least error counts.
   ///
-  /// The second difference is 8 times the error of linear interpolation of a parabola, 8/3 times that of the cubic
-  /// where f has a kink in the middle, and twice that where it has a step.
+  /// Of a line with one kink or one step the true error is at most 1/2 of the estimate by the cubic, 5/8 by the
+  /// parabola; a kink and a step at one place can cancel in the parabola's.
   /// @returns none where too few points are known, or not finite, along each axis
   [[nodiscard]] std::optional<GridValue> interpolated(std::uint64_t point, std::uint64_t step) const;
 

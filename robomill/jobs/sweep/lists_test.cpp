@@ -15,6 +15,7 @@
 #include "robomill/jobs/files/study_toml.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/sweep.hpp"
+#include "robomill/jobs/sweep/shown_points.hpp"
 #include "robomill/jobs/verbs.hpp"
 #include "testing/jobs/study_cut.hpp"
 #include "testing/support.hpp"
@@ -244,6 +245,18 @@ TEST_F(StudyLists, AreCombinedWithSamples) {
   ASSERT_EQ(page["statistics"]["sensitivity"].size(), 2U);
   EXPECT_EQ(page["statistics"]["sensitivity"][1]["at"]["tool.pitch_deg"], "[150, 210]");
   EXPECT_EQ(page["statistics"]["sensitivity"][1]["status"], "found");
+}
+
+// A page has up to 5000 points: of a long value it has the beginning, and digits that tell it from others.
+TEST_F(StudyLists, AreShortOnThePage) {
+  const std::string letters = "[\"" + std::string(195, 'x');
+  EXPECT_EQ(shown_text("[1, 2]"), "[1, 2]");
+  EXPECT_EQ(shown_text(letters + "\"]").size(), 199U);
+  const std::string one = shown_text(letters + "\u00e4\u00f6\u00fc1\"]"),
+                    other = shown_text(letters + "\u00e4\u00f6\u00fc2\"]");
+  EXPECT_TRUE(one.starts_with(letters + "\u00e4 \u2026 ")) << "ends with a whole letter: " << one;
+  EXPECT_EQ(one.size(), 197U + 2U + 5U + 8U);
+  EXPECT_NE(one, other);
 }
 
 }  // namespace study_lists_test

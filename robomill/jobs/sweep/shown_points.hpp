@@ -25,6 +25,9 @@ struct ShownPoints {
   std::vector<StudyColumn> boundary_keys = {};  ///< of points of the boundary
 };
 
+/// A text to look at: of a long one the beginning and eight digits that tell it from others.
+[[nodiscard]] std::string shown_text(const std::string& text);
+
 /// At most `most` of so many indices, one in each of `most` equal runs, increasing. Their places in the runs follow the
 /// golden ratio: no period of a grid is met.
 [[nodiscard]] inline std::vector<std::uint64_t> even_choice(std::uint64_t count, std::uint64_t most = 5000) {

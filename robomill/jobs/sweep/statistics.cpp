@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "robomill/base/printable.hpp"
+#include "robomill/jobs/sweep/shown_points.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -83,7 +84,7 @@ ProbabilityStatistics probability_of(const Study& study, const StudyPoints& poin
 
 std::string at_text(const Settled& at) {
   std::string out;
-  for (const auto& [key, value] : at) out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key, value);
+  for (const auto& [key, value] : at) out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key, shown_text(value));
   return printable(out);
 }
 
@@ -102,13 +103,6 @@ void add_boundary(const BoundaryStatistics& found, std::vector<std::string>& lin
                               printable(found.task.value), found.task.level, found.points, printable(steps)));
   lines.push_back(fmt::format("{} evaluations; the grid has {:.4g}: {:.3g} times as many.", found.evaluations,
                               found.grid_points, found.grid_points / static_cast<double>(found.evaluations)));
-  if (found.interpolated > 0) {
-    lines.push_back(
-        fmt::format("{} more points were interpolated. Of {} values that were evaluated and interpolated, {} differ by "
-                    "more than the "
-                    "estimated error.",
-                    found.interpolated, found.compared, found.outside));
-  }
   if (!found.complete) {
     lines.push_back(fmt::format("Warning: most_points = {} was reached before all {} halvings were done.",
                                 found.task.most_points, found.task.halvings));
@@ -116,6 +110,13 @@ void add_boundary(const BoundaryStatistics& found, std::vector<std::string>& lin
   if (found.unknown > 0) {
     lines.push_back(fmt::format("Warning: {} points have no value; the boundary ends there, and {} cubes lost it.",
                                 found.unknown, found.lost_cubes));
+  }
+  if (found.interpolated > 0) {
+    lines.push_back(
+        fmt::format("{} more points were interpolated. Of {} values that were evaluated and interpolated, {} differ by "
+                    "more than the "
+                    "estimated error.",
+                    found.interpolated, found.compared, found.beyond_error));
   }
   if (found.middle_points > 0) {
     lines.push_back(
@@ -196,7 +197,7 @@ BoundaryStatistics summary_of_boundary(const Study& study, const Boundary& bound
                          .evaluations = boundary.evaluations,
                          .interpolated = boundary.interpolated,
                          .compared = boundary.compared,
-                         .outside = boundary.outside,
+                         .beyond_error = boundary.beyond_error,
                          .grid_points = boundary.grid_points,
                          .unknown = boundary.unknown,
                          .lost_cubes = boundary.lost_cubes,

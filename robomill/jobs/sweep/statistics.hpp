@@ -20,13 +20,13 @@ using Settled = std::vector<std::pair<std::string, std::string>>;
 /// A boundary that was traced; its points are in tables of their own.
 struct BoundaryStatistics {
   BoundaryTask task = {};
-  std::vector<std::pair<std::string, double>> steps = {};        ///< of each key, in its unit: how fine it is
-  std::uint64_t points = 0;                                      ///< of the boundary
-  std::uint64_t evaluations = 0;                                 ///< points of the study
-  std::uint64_t interpolated = 0, compared = 0, outside = 0;     ///< as Boundary
-  double grid_points = 0.0;                                      ///< that a grid of these steps has
-  std::uint64_t unknown = 0, lost_cubes = 0, middle_points = 0;  ///< as Boundary
-  bool complete = true;                                          ///< as Boundary
+  std::vector<std::pair<std::string, double>> steps = {};          ///< of each key, in its unit: how fine it is
+  std::uint64_t points = 0;                                        ///< of the boundary
+  std::uint64_t evaluations = 0;                                   ///< points of the study
+  std::uint64_t interpolated = 0, compared = 0, beyond_error = 0;  ///< as Boundary
+  double grid_points = 0.0;                                        ///< that a grid of these steps has
+  std::uint64_t unknown = 0, lost_cubes = 0, middle_points = 0;    ///< as Boundary
+  bool complete = true;                                            ///< as Boundary
 };
 
 /// Indices of one value, at one combination of the keys that are not sampled.

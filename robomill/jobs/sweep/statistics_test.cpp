@@ -42,7 +42,7 @@ std::string grid(int first, int second) {
          std::to_string(second) + "\n";
 }
 
-constexpr const char* boundary = "[boundary]\nvalue = \"abs_mu@8000,3\"\nhalvings = 3\ninterpolate = false\n";
+constexpr const char* boundary = "[boundary]\nvalue = \"abs_mu@8000,3\"\nhalvings = 3\n";
 
 class Studies : public ::testing::Test {
  protected:
@@ -93,7 +93,7 @@ std::vector<std::pair<double, double>> crossings(const std::vector<std::vector<d
 }
 
 TEST_F(Studies, TraceTheBoundaryThatTheFullGridHas) {
-  const SweepResult result = run(grid(4, 4) + boundary, "traced");
+  const SweepResult result = run(grid(4, 4) + boundary + "interpolate = false\n", "traced");
   EXPECT_TRUE(result.complete());
   const SweepResult full = run("collect = \"abs_mu@8000,3\"\n" + grid(25, 25), "full");
   EXPECT_EQ(full.points, 625U);
@@ -116,6 +116,22 @@ TEST_F(Studies, TraceTheBoundaryThatTheFullGridHas) {
   EXPECT_EQ(found["complete"], true);
   EXPECT_EQ(result.findings.size(), 2U);
   EXPECT_EQ(rows("traced/results.csv").size(), result.points);
+  // Interpolated it crosses the same edges.
+  const SweepResult fewer = run(grid(4, 4) + boundary, "fewer");
+  EXPECT_LT(fewer.points, result.points);
+  std::vector<std::vector<double>> interpolated = rows("fewer/boundary.csv");
+  ASSERT_EQ(interpolated.size(), traced.size());
+  std::ranges::sort(interpolated);
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    EXPECT_NEAR(interpolated[i][0], traced[i][0], 0.1 * 7.0 / 24.0);
+    EXPECT_NEAR(interpolated[i][1], traced[i][1], 0.1 * 1200.0 / 24.0);
+  }
+  const io::Json counted = statistics("fewer")["boundary"];
+  EXPECT_EQ(counted["evaluations"], fewer.points);
+  EXPECT_EQ(counted["evaluations"].get<std::uint64_t>() + counted["interpolated"].get<std::uint64_t>(), result.points);
+  EXPECT_LE(counted["beyond_error"], counted["compared"]);
+  ASSERT_EQ(fewer.findings.size(), 3U);
+  EXPECT_NE(fewer.findings[2].find(" more points were interpolated. Of "), std::string::npos) << fewer.findings[2];
 }
 
 TEST_F(Studies, TraceABoundaryToTheSameBytesAfterAnInterruption) {

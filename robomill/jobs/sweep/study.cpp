@@ -277,7 +277,7 @@ std::vector<bool> StudyPoints::with_lists() const {
   std::vector<bool> out(keys_.size());
   for (const Axis& axis : axes_) {
     for (std::size_t k = 0; k < axis.places.size(); ++k) {
-      out[axis.places[k]] = std::ranges::any_of(axis.rows, [k](const auto& row) { return is_list(row[k]); });
+      out[axis.places[k]] = std::ranges::any_of(axis.rows, [k](const auto& row) { return is_list_literal(row[k]); });
     }
   }
   return out;

@@ -101,7 +101,7 @@ struct ROBOMILL_API Study {
 };
 
 /// Whether a value as TOML writes it is a list.
-[[nodiscard]] inline bool is_list(std::string_view value) {
+[[nodiscard]] inline bool is_list_literal(std::string_view value) {
   return value.starts_with('[');
 }
 

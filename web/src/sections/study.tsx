@@ -123,7 +123,7 @@ export function BoundarySection({ result, points }: { result: BoundaryResult; po
       </p>
       {result.interpolated > 0 && (
         <p>
-          {fixed(result.interpolated, 0)} more points were interpolated. Of {fixed(result.compared, 0)} values that were evaluated and interpolated, {fixed(result.outside, 0)} differ by more than the estimated error.
+          {fixed(result.interpolated, 0)} more points were interpolated. Of {fixed(result.compared, 0)} values that were evaluated and interpolated, {fixed(result.beyond_error, 0)} differ by more than the estimated error.
         </p>
       )}
       {!result.complete && <p>The most points were reached before all halvings were done.</p>}
