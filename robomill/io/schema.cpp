@@ -220,7 +220,7 @@ class Definitions {
   /// A list whose entries are plain or such lists.
   Json list_reference() {
     const char* const name = "nested_list";
-    const Json self = {{"$ref", std::string("#/$defs/") + name}};
+    Json self = {{"$ref", std::string("#/$defs/") + name}};
     Json any = Json::array();
     for (const char* plain : {"number", "string", "boolean"}) any.push_back({{"type", plain}});
     any.push_back(self);

@@ -81,9 +81,9 @@ std::vector<fs::path> files_named_in(const fs::path& document, Unreadable unread
   return std::move(found.files);
 }
 
-std::vector<fs::path> files_named_by(const std::vector<io::TomlValue>& values, const fs::path& folder) {
+std::vector<fs::path> files_named_by(const std::vector<io::Json>& values, const fs::path& folder) {
   Found found;
-  for (const io::TomlValue& value : values) add_files(value.value, folder, found);
+  for (const io::Json& value : values) add_files(value, folder, found);
   return std::move(found.files);
 }
 

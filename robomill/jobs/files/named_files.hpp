@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "robomill/io/toml/values.hpp"
+#include "robomill/io/json.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
 
@@ -26,7 +26,7 @@ enum class Unreadable {
 
 /// Of values, the files that their texts lead to from a folder, each once.
 /// @throws InvalidInput if they are more than 10,000
-[[nodiscard]] std::vector<std::filesystem::path> files_named_by(const std::vector<io::TomlValue>& values,
+[[nodiscard]] std::vector<std::filesystem::path> files_named_by(const std::vector<io::Json>& values,
                                                                 const std::filesystem::path& folder);
 
 }  // namespace robomill::jobs

@@ -97,14 +97,14 @@ void add_file(const std::filesystem::path& file, Digest& digest) {
 
 /// Files that the values of keys name, also in lists: their paths are relative to the base document.
 void add_files_of_values(const Study& study, Digest& digest) {
-  std::vector<io::TomlValue> texts;
+  std::vector<io::Json> texts;
   for (const Variation& one : study.vary) {
     for (const std::vector<std::string>& row : one.values) {
       for (const std::string& literal : row) {
-        if (literal.starts_with('"')) texts.emplace_back().value = io::toml_unquoted(literal);
+        if (literal.starts_with('"')) texts.emplace_back(io::toml_unquoted(literal));
         if (!is_list_literal(literal)) continue;
         for (io::TomlValue& list : io::toml_values("value = " + literal, study.file.string()))
-          texts.push_back(std::move(list));
+          texts.push_back(std::move(list.value));
       }
     }
   }

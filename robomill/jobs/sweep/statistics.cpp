@@ -206,8 +206,8 @@ BoundaryStatistics summary_of_boundary(const Study& study, const Boundary& bound
   const BoundaryGrid grid(boundary_options(study));
   for (std::size_t axis = 0; axis < grid.axes(); ++axis) {
     const double range = study.vary[axis].range[1] - study.vary[axis].range[0];
-    const auto steps = static_cast<double>((grid.count(axis) - 1) / boundary.step);
-    out.steps.emplace_back(study.vary[axis].keys.front(), range / steps);
+    const std::uint64_t steps = (grid.count(axis) - 1) / boundary.step;
+    out.steps.emplace_back(study.vary[axis].keys.front(), range / static_cast<double>(steps));
   }
   return out;
 }
