@@ -19,7 +19,7 @@ STUDY = """
 [study]
 job = "lobes"
 base = "lobes.toml"
-collect = ["limit@8000", "abs_mu@8000,1.0", "chatter_frequency@8000"]
+collect = {collect}
 chunk_points = {chunk_points}
 [[vary]]
 key = "cut.radial_depth_mm"
@@ -38,10 +38,11 @@ TABLES = ["results.csv", "results.h5"]
 KILLS = 20
 
 
-def write_study(folder, *, count, chunk_points, shards=4, restarts=1000):
+def write_study(folder, *, count, chunk_points, shards=4, restarts=1000, speeds=1):
+    collect = ["abs_mu@8000,1.0", "chatter_frequency@8000", *(f"limit@{8000 + 50 * i}" for i in range(speeds))]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "lobes.toml").write_text(CUT)
-    (folder / "study.toml").write_text(STUDY.format(count=count, chunk_points=chunk_points, shards=shards, restarts=restarts))
+    (folder / "study.toml").write_text(STUDY.format(collect=json.dumps(collect), count=count, chunk_points=chunk_points, shards=shards, restarts=restarts))
     return folder / "study.toml"
 
 
@@ -145,7 +146,8 @@ class OnACluster(unittest.TestCase):
         self.assert_same_tables(self.tables_by_threads(study))
 
     def test_kills_lose_nothing_and_do_nothing_twice(self):
-        study = write_study(self.folder, count=150, chunk_points=5)
+        # A chunk takes some tenths of a second, so that the kills meet work.
+        study = write_study(self.folder, count=150, chunk_points=5, speeds=60)
         chunks = 120
         expected = self.tables_by_threads(study)
         seed = int(os.environ.get("ROBOMILL_SEED", "1"))
