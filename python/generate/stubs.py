@@ -102,6 +102,8 @@ class Stubs(Names):
             star = ", *" if fields else ""
             lines += [f"{inner}def __init__(self{star}{given}) -> None: ...", f"{inner}def replace(self{star}{given}) -> {self.name_of(struct.qualified, stage)}: ..."]
         for one in constructed:
+            if len(constructed) > 1:
+                lines.append(f"{inner}@overload")
             lines.append(f"{inner}def __init__{self.signature(one, stage, True).rsplit(' -> ', 1)[0]} -> None: ...")
         for one in fields:
             lines += [f"{inner}@property", f"{inner}def {python_name(one.name)}(self) -> {self.type(one.type, stage, False)}:", self.documented(one.doc, inner)]
