@@ -197,7 +197,8 @@ class Docs:
         return f"{text}\n\n{self.function(dataclasses.replace(constructors[0], result='void'))}".strip()
 
     def made_by_library(self, struct):
-        return not self.types.refers(struct) and any(one.type.endswith("&") or "unique_ptr" in one.type for one in struct.fields)
+        # A document's source has no default, so that a struct with one has none either.
+        return not self.types.refers(struct) and any(one.type.endswith(("&", "io::TomlSource")) or "unique_ptr" in one.type for one in struct.fields)
 
     def head(self, name, parameters, is_method=False):
         """How it is called."""
