@@ -56,7 +56,7 @@ class BoundaryTracer {
  private:
   using Numbers = std::vector<std::uint64_t>;
 
-  /// And the corners of a cube, from its lowest: corner i is one step on along axis a where i has bit a.
+  /// Sets the corners of a cube, too, from its lowest: corner i is one step on along axis a where i has bit a.
   void set_step(std::uint64_t step) {
     step_ = step;
     corners_.assign(std::size_t{1} << grid_.axes(), 0);

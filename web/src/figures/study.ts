@@ -4,7 +4,7 @@ import { axis, barBelow, diverging, layout, plain, points, type Figure, type Lay
 
 const most_texts = 24; // rows of a map whose cells have texts
 const longest = 40; // of an axis title
-const longest_text = 200; // of a value under the pointer
+const longest_text = 220; // of a value under the pointer: a document has at most 200 letters of it, and eight digits that tell it from others
 const room_below = 130; // for a scale of colours
 
 /** A scale of colours below the axis of a plot that is so high. */
